@@ -2,8 +2,8 @@
 // Makes a batch (common/wire/batch_schema.h) of drawn steps: assembles stacks and next observations
 // from frames that are stored once.
 //
-// A sample is m steps in a row, t .. t+m-1, known by the first one (Eq. 14 of docs/algorithm.md);
-// m = n, or less where step t+m-1 terminated the episode:
+// A sample is m consecutive steps t .. t+m-1, named by its first step (Eq. 14 of
+// docs/algorithm.md). m = n, or less if step t+m-1 terminated the episode:
 //
 //   obs       = the K frames ending at the predecessor of step t
 //   action    = that of step t
@@ -12,16 +12,17 @@
 //   bootstrap = discount^(m-1) (1 - terminated): a time limit's end counts the next value
 //   a stack that would reach before the episode's reset repeats the reset's frame
 //
-// If the spec has goal pictures, both observations end with one more frame: the one of the
-// episode's goal record. It is shifted like the stack before it, so that distances between the two
-// pictures are kept.
+// If the spec has goal pictures, both observations end with one more frame: the frame of the
+// episode's goal record. The goal frame is shifted like the stack before it, so that distances
+// between the two pictures are kept.
 //
-// Under another goal (goal_change.h) rewards, terminations and the desired goal of both
-// observations are those of that goal, whose picture is the frame of the record that achieved it.
-// Where episodes end on success the sample ends with the step that reaches it; and where the
-// episode ended before n steps because it reached its own, with the episode, m < n, and bootstraps.
+// If a sample is relabelled with another goal (goal_change.h), rewards, terminations and the
+// desired goal of both observations are computed for the new goal. The goal picture is then the
+// frame of the record that achieved the new goal. If episodes end on success, the sample ends with
+// the step that reaches the new goal. If the episode reached its own goal before n steps, the
+// sample ends with the episode: m < n, and the target bootstraps.
 //
-// K stack, C channels of a frame, H W pixels, B batch.
+// K: stack, C: channels of a frame, H, W: pixels, B: batch.
 #pragma once
 
 #include <cstdint>
@@ -47,7 +48,7 @@ struct BatchPlan {
   struct Element {
     uint64_t id = 0;         // of the first step
     double probability = 0;  // with which it was drawn
-    uint64_t goal = 0;       // the record whose achieved goal is its goal; 0 = its own
+    uint64_t goal = 0;       // record whose achieved goal replaces the goal; 0 = not relabelled
     Shift obs, next_obs;
   };
   std::vector<Element> elements;  // B
@@ -57,13 +58,13 @@ struct PlanOptions {
   int batch = 1;          // B
   int copies = 1;         // c: elements in a row with the same step; divides B
   int target_shifts = 0;  // K: different shifts of next_obs among c; divides c, 0 = c
-  int critic_shifts = 0;  // M: the same of obs
+  int critic_shifts = 0;  // M: different shifts of obs among c; divides c, 0 = c
   int shift_pad = 0;      // pixels
 };
 
-// For every `copies` elements a step's id and, with a relabeller, its goal; for the i-th of them
-// the shift of obs, drawn for i < M and then that of i - M, and the shift of next_obs, likewise
-// with K. Nothing when the selector finds no step.
+// Draws a step for every `copies` elements and, with a relabeller, its goal. Element i of these
+// gets a new shift of obs if i < M, else the shift of element i - M; shifts of next_obs are drawn
+// likewise with K. Empty if the selector finds no step.
 std::optional<BatchPlan> DrawPlan(const PlanOptions& options, Selector* selector,
                                   Relabeller* relabeller, Random* random);
 
@@ -78,8 +79,8 @@ struct NStep {
 
 class BatchGather {
  public:
-  // Borrows ring, index and, where plans have goals, how these change a transition. `privileged` as
-  // BatchOptions has it.
+  // Borrows the ring, the index and `goals`, which relabels transitions (null: no plan has goals).
+  // `privileged`: as in BatchOptions.
   BatchGather(const Ring& ring, const EpisodeIndex& index, const ObservationSpec& spec,
               const NStep& n_step = {}, const GoalChange* goals = nullptr,
               std::span<const std::string> privileged = {});
@@ -87,8 +88,8 @@ class BatchGather {
   // Writes every byte of the arrays in `out`, whose batch is plan.elements.size() (CHECKed). The
   // steps must be sampleable for this stack and n.
   //
-  // `run` (null: the calling thread) may share the elements among threads: kElementsOfPart of them
-  // are a part. The bytes do not depend on how.
+  // `run` may divide the elements among threads, kElementsOfPart elements a part; null: the calling
+  // thread copies all. The bytes do not depend on the division.
   void Gather(const BatchPlan& plan, const BatchView& out, const RunParts& run = nullptr) const;
 
   static constexpr int kElementsOfPart = 4;  // 340 kB of two cameras' frames
@@ -97,7 +98,7 @@ class BatchGather {
   size_t InputBytes() const;  // of one observation's pictures
   // The elements [begin, end) of the plan, as Gather.
   void GatherElements(const BatchPlan& plan, size_t begin, size_t end, const BatchView& out) const;
-  // The goal of an element that has another than its own, else nothing.
+  // The goal of a relabelled element; empty for other elements.
   std::span<const float> GoalOf(const BatchPlan::Element& element) const;
   // The last step of a sample, its reward and its bootstrap.
   struct Returns {

@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which record follows which, and which steps can be sampled.
+// Index of the ring: successor of each record, and the steps that can be sampled.
 //
-//   A sample is known by its first step s: it begins at the observation before s, a stack of the K
-//   frames that end at prev(s), and goes on over s, next(s), ..., n = n_step steps in all, or fewer
-//   where one of them terminated the episode. It can be drawn iff the last of these is stored, the
-//   episode has ended (with `whole_episodes`), and prev(s) and its K - 1 predecessors, or what the
-//   episode has of them, are in the ring.
+// A sample is named by its first step s. Its observation is the stack of the K frames that end at
+// prev(s). The sample consists of the steps s, next(s), ...: n = n_step steps, or fewer if one of
+// the steps terminated the episode. A sample can be drawn if and only if
 //
-//   In runs with goal pictures an episode begins with a goal record, followed by its reset. Each of
-//   its samples needs the goal record too, which is then the oldest one.
+//   - its last step is stored,
+//   - its episode has ended (only with `whole_episodes`), and
+//   - prev(s) and the K - 1 records before it are in the ring, as far as the episode has them.
 //
-// An episode ends terminated, truncated, or cut: closed because its next record never came.
+// If the run has goal pictures, an episode begins with a goal record, followed by its reset. A
+// sample then also needs the goal record, which is the oldest record that the sample needs.
+//
+// An episode ends terminated, truncated, or cut: closed because its next record never arrived.
 //
 // The ring drops its oldest record first, so s can be sampled from the moment its last step is
-// stored until the oldest frame of its stack is overwritten. Each slot counts the steps that need
-// its record as their oldest one; overwriting it takes that many away at once. The number of
-// sampleable steps is therefore exact after every record, at no search.
+// stored until the oldest record that the sample needs is overwritten. Each slot counts the steps
+// for which its record is this oldest one; overwriting the record removes that many steps at once.
+// The number of sampleable steps is therefore exact after every record, without a search.
 //
 // Threads: none inside; one owner. Memory: 20 bytes per slot.
 #pragma once
@@ -35,21 +37,21 @@ namespace shoal::replay {
 struct IndexOptions {
   int stack = 1;                // K
   int n_step = 1;               // n
-  bool whole_episodes = false;  // sample nothing of episodes that go on
+  bool whole_episodes = false;  // samples only episodes that have ended
   bool goal_pictures = false;   // episodes begin with a goal record
 };
 
 class EpisodeIndex {
  public:
-  // Borrows the ring and reads what is in it, calling `progress` for each record, if there is one;
-  // records of a snapshot that vanished are skipped.
+  // Borrows the ring and reads its records; calls `progress`, unless it is empty, for each record.
+  // Records of a snapshot that were overwritten meanwhile are skipped.
   EpisodeIndex(const Ring& ring, const IndexOptions& options, const StartupProgress& progress = {});
 
-  // Told from now on of samples that come and go, and at once of those there are; borrowed until
-  // another, or nullptr, takes its place.
+  // Reports every sample that becomes available or unavailable to `selector`, beginning with those
+  // that are available now. Borrows the selector until the next call; nullptr: no selector.
   void SetSelector(Selector* selector);
 
-  // Memory it takes for a ring of that many records.
+  // Bytes of memory for a ring of `capacity` records.
   static constexpr uint64_t Bytes(uint64_t capacity) {
     return capacity * (2 * sizeof(uint64_t) + sizeof(uint32_t));
   }
@@ -63,10 +65,10 @@ class EpisodeIndex {
   // A record of `env` is missing: its open episode ends at the last stored one.
   void Close(uint32_t actor, uint64_t session, uint32_t env);
 
-  // `id`: of the sample's first step.
+  // `id`: the first step of the sample.
   bool Sampleable(uint64_t id) const;
-  // The record that follows or precedes `id`, which the ring holds, in its episode; 0 when none
-  // does (yet), or no longer.
+  // The record that follows or precedes record `id` in its episode; 0 if there is none in the ring.
+  // The ring must hold `id`.
   uint64_t Next(uint64_t id) const { return next_[Slot(id)]; }
   uint64_t Previous(uint64_t id) const;
   // The goal record of the episode of a sampleable step, in runs with goal pictures.
@@ -74,12 +76,12 @@ class EpisodeIndex {
   uint64_t sampleable() const { return sampleable_; }
   // How often a step became sampleable since construction.
   uint64_t became_sampleable() const { return became_sampleable_; }
-  // Steps added since construction that have not become sampleable: those that wait for a later
-  // record, and those that never will. A step that was there before and has become so counts
-  // against them.
+  // Steps added since construction that are not sampleable: some wait for a later record, others
+  // never become sampleable. Each step that was stored before construction and became sampleable
+  // since reduces this count by one.
   uint64_t unsampleable() const { return steps_ - std::min(steps_, became_sampleable_); }
-  // Episodes that ended neither terminated nor truncated, seen when the next one began or a record
-  // was missing. Since construction.
+  // Episodes that ended neither terminated nor truncated, since construction. Such an end is
+  // detected when the next episode begins or a record is missing.
   uint64_t cut_episodes() const { return cut_episodes_; }
 
  private:
@@ -94,13 +96,14 @@ class EpisodeIndex {
     bool open = false;                     // a next step may follow
   };
 
-  // The record is the next of an episode that has come as far as `last`, by its kind and index.
+  // Whether the record continues the episode whose newest record is `last`, by kind and index.
   static bool Follows(const RecordHeader& header, const Track& last);
   size_t Slot(uint64_t id) const { return static_cast<size_t>(id % ring_.capacity()); }
-  // Makes the samples sampleable whose last step `id` is: that of n steps and, when it terminated
-  // the episode, the shorter ones.
+  // Makes the samples that end with step `id` sampleable: the sample of n steps and, if step `id`
+  // terminated the episode, the shorter samples.
   void Complete(uint64_t id);
-  // The same for every step of the episode that has ended with `last`, for whole_episodes.
+  // Calls MakeSampleable for every step of the episode that ended with step `last`, for
+  // whole_episodes.
   void CompleteEpisode(uint64_t last);
   void MakeSampleable(uint64_t first);
   // Record `gone` has been overwritten.
@@ -108,16 +111,18 @@ class EpisodeIndex {
   void Follow(uint64_t id);
   // The episode that was open ends at the track's last record.
   void Cut(Track* track);
-  // The oldest record that the sample beginning with step `first` needs; 0 when it is gone.
+  // The oldest record that the sample beginning with step `first` needs; 0 if that record has been
+  // overwritten.
   uint64_t OldestNeeded(uint64_t first) const;
-  // The first record of the episode of `id`; 0 when it is gone, or is no goal record.
+  // The first record of the episode of `id`; 0 if that record has been overwritten or is no goal
+  // record.
   uint64_t FirstGoalRecord(uint64_t id) const;
 
   const Ring& ring_;
   const IndexOptions options_;
   Selector* selector_ = nullptr;
   std::unordered_map<uint32_t, Track> tracks_;  // by env
-  std::vector<uint64_t> next_;                  // by slot; 0 = nothing follows (yet)
+  std::vector<uint64_t> next_;                  // by slot; 0 = no record follows (yet)
   std::vector<uint64_t> oldest_needed_;         // by slot; 0 = not a sample's first step (yet)
   std::vector<uint32_t> needed_by_;             // by slot: sampleable steps whose oldest it is
   uint64_t sampleable_ = 0, became_sampleable_ = 0, cut_episodes_ = 0;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Relabels a transition with another goal: the desired goal of both observations, at its place in
-// their vectors, and the reward, computed by the task's goal half as the actor did, to the last
-// bit. The termination of the episode stays, unless episodes end on success: then the step that
-// reaches the new goal terminates it.
+// Relabels a transition with another goal: replaces the desired goal in the vectors of both
+// observations, and recomputes the reward with the task's goal functions. The computation is the
+// actor's, bit for bit. Whether the episode terminated does not change, unless episodes end on
+// success: then the step that reaches the new goal terminates the episode.
 //
-// A goal is the achieved goal of a stored record; G its numbers. Where goals are shown in pictures,
-// that record's frame is the goal's: batch_gather.h.
+// A goal is the achieved goal of a stored record; G: its size. If goals are shown in pictures, the
+// frame of the record is the goal picture (batch_gather.h).
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,8 @@ namespace shoal::replay {
 
 class GoalChange {
  public:
-  // `privileged`: as BatchOptions has it. CHECK: the records have both goals, and the policy sees
-  // the desired one, as numbers or in a picture.
+  // `privileged`: as in BatchOptions. CHECK: the records have both goals, and the policy sees the
+  // desired goal, as numbers or in a picture.
   GoalChange(const ObservationSpec& spec, tasks::Task task,
              std::span<const std::string> privileged = {}, bool end_on_success = false);
 
@@ -29,9 +29,10 @@ class GoalChange {
   std::span<const float> Achieved(const uint8_t* record) const;
   // Reward of the step that led to `record`, unscaled.
   float Reward(const uint8_t* record, std::span<const float> goal) const;
-  // Whether that step would have ended the episode, time limits apart.
+  // Whether the step that led to `record` would have ended the episode, apart from time limits.
   bool Terminated(const uint8_t* record, std::span<const float> goal) const;
-  // Into a policy's vector (V) and the privileged one (P; may be empty), where they have it.
+  // Writes the goal into a policy's vector (V) and the privileged vector (P; may be empty), if they
+  // contain the desired goal.
   void WriteGoal(std::span<const float> goal, std::span<float> observed,
                  std::span<float> privileged) const;
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The records of an intake (common/intake/chunk_intake.h) into the ring, each behind its
+// Stores the records of an intake (common/intake/chunk_intake.h) in the ring, each linked to its
 // predecessor in the episode.
 //
-// The counters are written after each record: whenever this process is killed, at most one stored
-// record is not counted yet, and the constructor finds it by its sequence.
+// The counters are written after each record. If this process is killed, at most one stored record
+// is not counted yet; the constructor finds this record by its sequence.
 //
 // Threads: none inside; one owner.
 #pragma once
@@ -21,8 +21,9 @@ namespace shoal::replay {
 
 class Intake final : private RecordTaker {
  public:
-  // Borrows all three. Accounts for records that were stored after their session's counters were
-  // last written (the writer died between the two). Throws Error when ring and sessions disagree.
+  // Borrows ring, sessions and index. Counts records that were stored after the last write of their
+  // session's counters (the writer was killed between the two). Throws Error if the ring and the
+  // sessions disagree.
   Intake(uint64_t spec_hash, Ring* ring, SessionTable* sessions, EpisodeIndex* index);
   Intake(const Intake&) = delete;
   Intake& operator=(const Intake&) = delete;

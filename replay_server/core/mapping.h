@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A stretch of mapped memory: a file of its own or anonymous.
+// Mapped memory: a file or anonymous.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +12,9 @@ namespace shoal::replay {
 
 enum class Access { kReadOnly, kReadWrite };
 
-// Owns the mapping and, for a file, its descriptor with an exclusive lock when writable: of the
-// very descriptor that is mapped (flock), where FileLock would lock whatever the path names by
-// then. Move-only.
+// Owns the mapping and, for a file, its descriptor. A writable file is locked exclusively with
+// flock on the mapped descriptor; FileLock would lock the file that the path names at that time,
+// which may be another one. Move-only.
 class Mapping {
  public:
   Mapping() = default;
@@ -27,8 +27,8 @@ class Mapping {
   // A new file of zeros, every block reserved, so that a later write cannot fail. Throws
   // Error, and leaves no file, when there is no room. A file of that name is replaced.
   static Mapping NewFile(const std::filesystem::path& path, uint64_t bytes);
-  // All of an existing file. Throws Error when it cannot be opened, is empty, or, for kReadWrite,
-  // another process has it open for writing.
+  // Maps a whole existing file. Throws Error if the file cannot be opened or is empty, or, for
+  // kReadWrite, if another process has the file open for writing.
   static Mapping OpenFile(const std::filesystem::path& path, Access access);
 
   uint8_t* data() const { return data_; }

@@ -29,16 +29,16 @@ namespace shoal::replay {
 enum class MovementKind { kPath, kDisplacement };
 
 // Episodes must have ended: EpisodeIndex with whole_episodes. Movement is counted in whole
-// micrometres and depends on nothing older than the observation before the step, so that a server
-// that starts again with the same ring draws the same samples. Where nothing moves all are drawn
-// uniformly.
+// micrometres and depends on no record older than the observation before the step, so that a
+// restarted server with the same ring draws the same samples. If nothing moves, all samples are
+// drawn uniformly.
 class MovementSelector final : public Selector {
  public:
-  // Borrows all; share in [0, 1].
+  // Borrows ring, index and goals; share in [0, 1].
   MovementSelector(const Ring& ring, const EpisodeIndex& index, const GoalChange& goals,
                    double share, MovementKind kind = MovementKind::kPath);
 
-  // Memory it takes for a ring of that many records.
+  // Bytes of memory for a ring of `capacity` records.
   static constexpr uint64_t Bytes(uint64_t capacity) {
     return WeightTree::Bytes(capacity) + capacity * sizeof(Ahead);
   }
@@ -57,9 +57,10 @@ class MovementSelector final : public Selector {
   };
 
   size_t Slot(uint64_t id) const { return static_cast<size_t>(id % ring_.capacity()); }
-  // Movement from a step of an ended episode on; its predecessor must be stored.
+  // Movement from step `id` to the end of its ended episode; the predecessor of `id` must be
+  // stored.
   uint64_t MovementFrom(uint64_t id);
-  // Between the records before step `from` and of step `to`.
+  // Distance between the achieved goals before step `from` and after step `to`, in micrometres.
   uint64_t Micrometres(uint64_t from, uint64_t to) const;
 
   const Ring& ring_;
@@ -69,8 +70,8 @@ class MovementSelector final : public Selector {
   const MovementKind kind_;
   UniformSelector uniform_;
   WeightTree weights_;             // by slot; 0 = cannot be drawn
-  std::vector<Ahead> ahead_;       // by slot; of another id = not known yet
-  std::vector<uint64_t> unknown_;  // steps at hand
+  std::vector<Ahead> ahead_;       // by slot; an entry with another id is not computed yet
+  std::vector<uint64_t> unknown_;  // work space of MovementFrom
 };
 
 }  // namespace shoal::replay

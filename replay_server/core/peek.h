@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A look into the ring of a run: what the learner would be given. For `shoal replay peek` as a
-// picture, with and without the random shift; for `shoal export` the observations alone.
+// Draws samples from the ring of a run as the learner would get them. `shoal replay peek` shows
+// them as a picture, with and without the random shift; `shoal export` uses the observations only.
 #pragma once
 
 #include <cstdint>
@@ -10,17 +10,17 @@
 
 namespace shoal::replay {
 
-// "there is no 'FILE': ...", with how to keep it.
+// The message "there is no 'FILE': ...", with advice on keeping the ring.
 std::string DescribeMissingRing(const std::filesystem::path& file);
-// Throws Error (usage) with that text.
+// Throws Error (usage) with the text of DescribeMissingRing if there is no ring file.
 void CheckRingIsThere(const std::filesystem::path& file);
 
 struct Peek {
   uint64_t records = 0;     // in the ring now
-  uint64_t sampleable = 0;  // steps of these that can be sampled
+  uint64_t sampleable = 0;  // steps among the records that can be sampled
   // Picture: (height, width, 3) uint8 RGB, row 0 = top. One column per element. Four rows per
-  // camera: obs, obs shifted, next_obs, next_obs shifted, each the newest frame of its stack; a
-  // fifth with goal pictures: the goal that the element has, not shifted. Empty for a spec without
+  // camera: obs, obs shifted, next_obs, next_obs shifted, each the newest frame of its stack. With
+  // goal pictures a fifth row shows the goal of the element, not shifted. Empty for a spec without
   // pixels.
   int width = 0, height = 0;
   std::vector<uint8_t> rgb;
@@ -36,7 +36,7 @@ struct PeekedObservations {
   std::vector<float> vectors;   // (batch, V)
 };
 
-// The observations before `batch` steps, drawn as PeekBatch draws them; throws Error as it does.
+// The observations before `batch` steps, drawn as in PeekBatch. Throws Error like PeekBatch.
 PeekedObservations PeekObservations(const std::filesystem::path& folder, int batch, uint64_t seed);
 
 }  // namespace shoal::replay

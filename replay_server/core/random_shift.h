@@ -20,7 +20,8 @@ struct Shift {
   bool operator==(const Shift&) const = default;
 };
 
-// dx first, then dy; two draws whatever the pad, so that the stream does not depend on it.
+// Draws dx, then dy. Always takes two random numbers, whatever the pad, so that later draws do not
+// depend on the pad.
 Shift DrawShift(int pad, Random* random);
 
 // in, out: (planes, height, width) uint8, row 0 = top. May not overlap. |dx| < width, |dy| < height

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gives samples other goals: hindsight.h. What another goal changes is goal_change.h.
+// Gives samples other goals (hindsight.h). goal_change.h computes the relabelled transition.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,9 @@ namespace shoal::replay {
 class Relabeller {
  public:
   virtual ~Relabeller() = default;
-  // The record of the same episode whose achieved goal the sample that begins with step `id` is
-  // given, or 0: it keeps its own. `random` alone decides, given the same ring.
+  // Chooses the new goal of the sample that begins with step `id`: returns the record of the same
+  // episode whose achieved goal becomes the goal, or 0 if the sample keeps its goal. Given the same
+  // ring, the choice depends on `random` alone.
   virtual uint64_t DrawGoal(uint64_t id, Random* random) = 0;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The replay server without threads, clocks and network: chunks in, credits out; requests in,
-// batches out. Everything below belongs to one owner.
+// The replay server without threads, clocks and network: takes chunks and gives credits, takes
+// requests and gives batches. The core and its parts have one owner:
 //
 //   ring             stored records
 //   episode index    successors of records, sampleable steps
@@ -38,11 +38,11 @@
 
 namespace shoal::replay {
 
-// How far apart the two observations of a sample are, by the configuration.
+// Number of steps n and discount between the two observations of a sample, from the configuration.
 NStep NStepOf(const Config& config);
 
-// Throws Error (usage) where nothing could ever be drawn, or actors and learner could wait for each
-// other: a ring too small for min_size samples of n steps, a band too narrow for the limiter.
+// Throws Error (usage) if no batch could ever be drawn, or if actors and learner could wait for
+// each other: a ring too small for min_size samples of n steps, a band too narrow for the limiter.
 void CheckSampling(const RunConfig& run);
 
 // The answer to one request, without its bytes.
@@ -51,7 +51,7 @@ struct DrawnBatch {
   uint64_t stored_records = 0, stored_steps = 0, unsampleable_steps = 0;  // when it was drawn
 };
 
-// Counts since construction, where not said otherwise.
+// Counts since construction unless stated otherwise.
 struct CoreCounters {
   IntakeCounters intake;
   uint64_t batches = 0, repeated_batches = 0;
@@ -65,37 +65,37 @@ struct CoreCounters {
 class ReplayCore {
  public:
   // Opens or makes the ring in `folder` (or in memory, as configured). `replay_session` must grow
-  // from start to start. `former`: what the server before said; counts only where it knew more than
-  // the ring does.
-  // `progress` is called often while a ring that is there is read. Throws Error: no room, a ring
-  // that does not fit, a band that is too small.
+  // from start to start. `former`: counts of the run's earlier servers; used only where they exceed
+  // those of the ring. `progress` is called often while an existing ring is read. Throws Error: no
+  // room, a ring that does not fit, a band that is too small.
   ReplayCore(const RunConfig& run, const std::filesystem::path& folder, uint64_t replay_session,
              const FormerServer& former = {}, const StartupProgress& progress = {});
   // The parts refer to each other: neither copied nor moved.
   ReplayCore(const ReplayCore&) = delete;
   ReplayCore& operator=(const ReplayCore&) = delete;
 
-  // `latest_session`: as Intake::Take.
+  // `latest_session`: as for Intake::Take.
   ChunkResult TakeChunk(const TransitionChunk& chunk,
                         uint64_t latest_session = std::numeric_limits<uint64_t>::max());
   RequestFate TakeRequest(const SampleRequest& request);
 
-  // Draws and writes the next batch that is due into `data` (batch_schema().total_bytes(), aligned
-  // to 64); nothing when no request waits or it must wait on.
+  // Draws the next batch that is due and writes it to `data` (batch_schema().total_bytes(), aligned
+  // to 64). Empty if no request waits, or if the next request has to wait longer.
   std::optional<DrawnBatch> TryAnswer(uint8_t* data);
-  // The request that TryAnswer would answer, where it was answered before: should that batch still
-  // be there, it is the answer again, and AnsweredAgain() in place of TryAnswer.
+  // The request that TryAnswer would answer, if the request was answered before. If the caller
+  // still has the earlier batch, it sends this batch again and calls AnsweredAgain() instead of
+  // TryAnswer.
   std::optional<SampleRequest> NextRepeated() const;
   void AnsweredAgain();
   // The elements of the batch drawn last.
   const BatchPlan& last_plan() const { return last_plan_; }
 
-  // Credits to send to the actors: all, or those that have changed since the last call.
+  // Credits to send to the actors: all, or only those that have changed since the last call.
   std::vector<Credit> TakeCredits(bool changed_only);
-  // CreditBook::Urgent, after taking over what has come.
+  // CreditBook::Urgent, after the credit book was updated with the limiter's state and the budget.
   bool CreditsUrgent();
-  // For an actor of another spec, or one that a newer session has superseded: our hash, that
-  // session, no credit.
+  // Answer to an actor with another spec, or to one that a newer session has replaced: contains
+  // this server's spec hash, the newest session and no credit.
   Credit Refusal(const TransitionChunk& chunk) const;
 
   // Shares the copying of a batch (BatchGather::Gather); null: the calling thread copies.
@@ -103,12 +103,13 @@ class ReplayCore {
 
   void SetDraining(bool draining);
   bool draining() const { return draining_; }
-  // The run's env steps from now on (before: the configured ones): with them stored no actor gets
-  // credit any more. Draining and lockstep, which ends by its own rule, know no budget.
+  // Sets the budget of env steps (initially the configured budget). Once so many env steps are
+  // stored, no actor gets credit any more. The budget does not apply while draining, nor in
+  // lockstep, which has its own end.
   void SetBudget(uint64_t env_steps) { budget_ = env_steps; }
   void SetSamplesPerInsert(const Schedule& samples) { limiter_.SetSamplesPerInsert(samples); }
 
-  // Who waits for whom, now.
+  // Which side waits at present.
   bool InsertsBlocked() const;  // an actor gets less than its window
   bool SamplesBlocked() const;  // a request waits for the limiter, min size or after_steps
 
@@ -119,7 +120,7 @@ class ReplayCore {
   const Ring& ring() const { return ring_; }
   const EpisodeIndex& index() const { return index_; }
   const SessionTable& sessions() const { return sessions_; }
-  // An earlier server had stored records that are not in the ring: they are lost.
+  // Whether an earlier server had stored records that are missing from this ring: they are lost.
   bool ring_replaced() const { return ring_replaced_; }
   const RateLimiter& limiter() const { return limiter_; }
   const RequestQueue& requests() const { return requests_; }
@@ -128,7 +129,7 @@ class ReplayCore {
   uint64_t budget() const { return budget_; }
 
  private:
-  // Steps left of the budget; empty if there is no limit.
+  // Remaining env steps of the budget; empty if there is no limit.
   std::optional<uint64_t> StepsLeft() const;
 
   const RunConfig run_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which samples a batch consists of and with which goals, as the configuration has it. A new way of
-// selecting or relabelling is a file of its own, its keys, and a line here.
+// The choice of samples for a batch, and of their goals, by the configuration. A new selector or
+// relabeller needs a file of its own, its configuration keys, and a line here.
 #pragma once
 
 #include <cstdint>
@@ -17,17 +17,17 @@ namespace shoal::replay {
 
 struct ReplayPolicies {
   std::unique_ptr<Relabeller> relabeller;  // null: every sample keeps its goal
-  std::unique_ptr<GoalChange> goals;       // there with a relabeller
+  std::unique_ptr<GoalChange> goals;       // not null if there is a relabeller
   std::unique_ptr<Selector> selector;      // may borrow goals
 };
 
-// They borrow ring and index. Throws Error as CheckHindsight.
+// The policies borrow ring and index. Throws Error like CheckHindsight.
 ReplayPolicies MakePolicies(const RunConfig& run, const Ring& ring, const EpisodeIndex& index);
 
 IndexOptions IndexOptionsOf(const RunConfig& run);
 
-// Stored steps per actor session that may become sampleable with a later record: those that wait
-// for the n - 1 after them, or for their episode's end.
+// Upper bound of the stored steps per actor session that become sampleable with a later record:
+// they wait for the n - 1 steps after them, or for the end of their episode.
 uint64_t WaitingSteps(const RunConfig& run);
 
 }  // namespace shoal::replay

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Batch requests of the learner, answered in the order of their ids.
 //
-// Bounded by the learner's credits. A new learner session discards the old one's requests. A
-// request that comes again while it waits is the same request; one that was answered is answered
-// again, at no charge to the rate limiter; one that the learner is done with waits no more.
+// The queue is bounded by the learner's credits. A new learner session discards the requests of the
+// old one. A request that arrives again while it waits is queued once. A request that was answered
+// is answered again, at no charge to the rate limiter. A request that the learner has finished with
+// is removed.
 //
 // Threads: none inside; one owner.
 #pragma once
@@ -21,7 +22,7 @@ enum class RequestFate {
   kAlreadyQueued,
   kStale,        // of a learner session that has been replaced
   kWrongSpec,    // another observation spec
-  kWrongSchema,  // other arrays, or filled in another way
+  kWrongSchema,  // other arrays, or arrays with another definition
   kFull,         // more than the credits allow; the learner asks again
 };
 
@@ -34,7 +35,7 @@ class RequestQueue {
 
   // The next request, if it may be served now that `stored_steps` step records are stored.
   std::optional<SampleRequest> Next(uint64_t stored_steps) const;
-  // It was answered before: the learner did not get it.
+  // Whether the request was answered before: the learner did not get the batch.
   bool Answered(const SampleRequest& request) const { return request.request <= answered_; }
   // Removes the request that Next() returned.
   void Pop();

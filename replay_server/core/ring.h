@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The frame ring: the newest `capacity` records in one mapping, each stored once, as it came.
-// ring_format.h has the layout and what survives what.
+// The frame ring: the newest `capacity` records in one mapping, each stored once and unchanged.
+// ring_format.h describes the layout, and which failures a ring survives.
 //
 // Threads: none inside; one owner. A second process may map the file read-only (OpenSnapshot).
 #pragma once
@@ -18,25 +18,25 @@
 namespace shoal::replay {
 
 struct RingOptions {
-  std::filesystem::path file;  // empty: anonymous memory, nothing survives
+  std::filesystem::path file;  // empty: anonymous memory, lost with the process
   uint64_t capacity = 0;       // records
   std::string run;             // stored in the file for people
-  // Step records that earlier servers of the run have acknowledged. The count goes on from here
-  // where the ring itself knows of fewer: it is new, or an older copy.
+  // Step records that earlier servers of the run have acknowledged. If the ring has counted fewer,
+  // because it is new or an older copy, counting continues from this number.
   uint64_t steps_before = 0;
-  StartupProgress progress = {};  // called while a file that is there is read; may be empty
+  StartupProgress progress = {};  // called while an existing file is read; may be empty
 };
 
 class Ring {
  public:
-  // Opens the file when it is there, else makes it (under another name, renamed when complete).
-  // Throws Error when there is no room, or (usage) when the file is of another spec, version or
-  // capacity, truncated or damaged: then nothing of it is used and the message says what differs,
-  // and what to do.
+  // Opens the file, or makes it if there is none (under a temporary name, renamed when complete).
+  // Throws Error if there is no room, or (usage) if the file has another spec, version or capacity,
+  // or is truncated or damaged. A refused file is not used in part; the message states the
+  // difference and the remedy.
   Ring(const ObservationSpec& spec, const RingOptions& options);
 
-  // Throws Error (usage) as the constructor would for the file's header and size, without reading
-  // its records.
+  // Checks the header and size of the file without reading its records. Throws Error (usage) as the
+  // constructor does.
   static void CheckFile(const ObservationSpec& spec, const RingOptions& options);
 
   // Read-only view of a file that a server may be writing to. Records may vanish under the reader:
@@ -47,23 +47,24 @@ class Ring {
   uint64_t capacity() const { return geometry_.capacity; }
   uint64_t bytes() const { return mapping_.size(); }
 
-  // Ids oldest_id() .. last_id() are there; empty when last_id() < oldest_id(). last_id() is also
-  // the number of records stored over the whole run.
+  // The ring holds the ids oldest_id() .. last_id(); it is empty if last_id() < oldest_id().
+  // last_id() is also the number of records stored over the whole run.
   uint64_t oldest_id() const { return oldest_id_; }
   uint64_t last_id() const { return last_id_; }
   bool Holds(uint64_t id) const { return id >= oldest_id_ && id <= last_id_; }
-  // Step records stored over the whole run, those included that went with a former ring.
+  // Step records stored over the whole run, including those in an earlier ring that was lost.
   uint64_t stored_steps() const { return stored_steps_; }
 
   // Stores a copy of a record of layout().record_bytes() as the successor of record `prev` (0 for a
   // reset) and returns its id. Overwrites the record `capacity` ids before.
   uint64_t Append(uint32_t actor, uint64_t session, uint64_t prev, const uint8_t* record);
 
-  // For ids that Holds(). The views borrow the mapping.
+  // These three require Holds(id). The returned views borrow the mapping.
   const SlotHeader& Slot(uint64_t id) const;
   const uint8_t* Record(uint64_t id) const;
   const RecordHeader& Header(uint64_t id) const { return RecordLayout::Header(Record(id)); }
-  // The slot of `id` holds it, completely written. Always so but in a snapshot.
+  // Whether the slot of record `id` contains that record, completely written. Can be false only in
+  // a snapshot.
   bool Intact(uint64_t id) const;
 
   std::span<StoredSession> sessions() const;

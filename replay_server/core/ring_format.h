@@ -9,9 +9,9 @@
 // the newest `capacity` records.
 //
 // The file survives the death of the writing process at any instant, because the kernel owns its
-// pages. It does not survive a power failure: nothing is synced. The commit word covers the slot
-// header, with the frame's check word in it, and the record up to its frame: a flipped bit anywhere
-// in a record is noticed.
+// pages. The file does not survive a power failure: nothing is synced. The commit word covers the
+// slot header, which contains the frame's check word, and the record up to its frame. A flipped bit
+// anywhere in a record is therefore detected.
 #pragma once
 
 #include <cstdint>
@@ -46,7 +46,7 @@ struct SessionCopy {
   uint64_t version;  // grows with each update, from 1; the copy is number version mod 2
   uint64_t session;
   uint64_t actor;
-  uint64_t highest;  // sequences 1..highest are dealt with
+  uint64_t highest;  // sequences 1..highest have been processed
   uint64_t rejected;
   uint64_t after_gap;
   uint64_t lost;
@@ -74,7 +74,7 @@ static_assert(sizeof(SlotHeader) == 64);
 // Sizes and offsets of a ring. A value type.
 struct RingGeometry {
   uint64_t record_bytes = 0;
-  uint64_t prefix_bytes = 0;  // of a record before its frame: what the commit word covers itself
+  uint64_t prefix_bytes = 0;  // of a record before its frame: covered by the commit word
   uint64_t capacity = 0;
 
   RingGeometry() = default;

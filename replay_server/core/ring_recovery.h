@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading what an earlier process left in a ring file.
+// Reads the records of an existing ring file.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@ namespace shoal::replay {
 inline constexpr char kRingRemedy[] =
     "remove it, and the run goes on with an empty replay and its count of env steps";
 
-// Throws Error saying what differs unless the file is a whole ring of version kRingVersion for
-// `spec`. Returns its capacity.
+// Throws Error stating the difference unless the file is a complete ring of version kRingVersion
+// for `spec`. Returns its capacity.
 uint64_t CheckRingHeader(const Mapping& mapping, const ObservationSpec& spec,
                          const std::string& name);
 
@@ -26,16 +26,16 @@ struct RingExtent {
   uint64_t stored_steps = 0;
 };
 
-// Finds the records. Every slot must hold what a writer that died at some instant leaves: the
-// newest records without holes, and at most one slot half-written. Throws Error naming the slot
-// otherwise.
+// Finds the records. A writer that was killed leaves the newest records without holes and at most
+// one slot half-written. Throws Error naming the slot if the file differs from this.
 RingExtent ScanRing(const Mapping& mapping, const RingGeometry& geometry, const std::string& name,
                     const StartupProgress& progress = {});
 
-// The same while another process writes: takes what is there, never throws.
+// Finds the records while another process writes. Leaves out the eighth of a full ring that the
+// writer overwrites next. Never throws.
 RingExtent ScanLiveRing(const Mapping& mapping, const RingGeometry& geometry);
 
-// The slot's commit word and frame check fit its content.
+// Whether the commit word and the frame check of the slot match its content.
 bool SlotIntact(const Mapping& mapping, const RingGeometry& geometry, uint64_t slot);
 
 }  // namespace shoal::replay

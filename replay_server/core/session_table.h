@@ -23,10 +23,11 @@ class SessionTable final : public SessionLedger {
   // `storage` is borrowed. Sessions found there are loaded. Throws Error when one is damaged.
   explicit SessionTable(std::span<StoredSession> storage);
 
-  // Adds what an earlier server knew beyond this table, because its ring is gone or this ring is an
-  // older copy of it. The records that it had stored beyond ours are lost.
+  // Adds the counts of an earlier server that exceed those of this table: its ring is gone, or this
+  // ring is an older copy. Records that the earlier server stored and this ring lacks are counted
+  // as lost.
   void TakeOver(const FormerServer& former);
-  // An earlier server had stored records that are not stored here.
+  // Whether an earlier server had stored records that this ring lacks.
   bool StoresLessThan(const FormerServer& former) const;
 
  private:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A sign of life from long work at start: reading a cold ring of many gigabytes takes minutes.
+// Callback that reports progress during a long start: reading a cold ring of many gigabytes takes
+// minutes.
 #pragma once
 
 #include <functional>

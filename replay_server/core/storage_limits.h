@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Is there room for the ring? Asked once at start, because afterwards it is too late: a full disk
-// under a mapping is a SIGBUS, a full cgroup a SIGKILL.
+// Checks whether there is room for the ring. The check runs once at start: later a full disk under
+// a mapping raises SIGBUS, and a full cgroup SIGKILL.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +12,20 @@ namespace shoal::replay {
 
 struct MemoryRoom {
   uint64_t bytes = 0;
-  std::string source;  // what limits it: "MemAvailable" or a cgroup file
+  std::string source;  // the limit: "MemAvailable" or a cgroup file
 };
 
-// The least of the machine's available memory and what each cgroup (v1 or v2) around this process
-// leaves; reclaimable file cache counts as free. Reads below `root` ("/" but for tests).
+// The smaller of the machine's available memory and the memory that each cgroup (v1 or v2) of this
+// process leaves. Reclaimable file cache counts as free. Reads files below `root` ("/" except in
+// tests).
 MemoryRoom AvailableMemory(const std::filesystem::path& root = "/");
 
-// Throw Error naming the bytes needed and there, and what to change; `remedy` is one that the
-// caller knows beside a smaller ring, `root` as above.
+// Throws Error naming the bytes needed, the bytes available and the remedies: a smaller ring and
+// `remedy`. `root`: as for AvailableMemory.
 void CheckMemoryRoom(uint64_t bytes, std::string_view remedy = "set replay.storage=file",
                      const std::filesystem::path& root = "/");
-// `folder` will hold a file of `bytes`. Checks the file size limit, the file system's free space,
-// and memory where the file system lives in memory.
+// Checks the room for a file of `bytes` in `folder`: the file size limit, the free space of the
+// file system, and memory if the file system is in memory. Throws Error like CheckMemoryRoom.
 void CheckDiskRoom(const std::filesystem::path& folder, uint64_t bytes);
 
 }  // namespace shoal::replay

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much a replay of a configuration takes, for those who look whether there is room.
+// Storage that a replay needs for a configuration, for checks of available room.
 #pragma once
 
 #include <cstdint>

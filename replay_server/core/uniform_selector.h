@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every sample with the same probability.
+// Draws every sample with the same probability.
 #pragma once
 
 #include "replay_server/core/episode_index.h"
@@ -8,12 +8,12 @@
 
 namespace shoal::replay {
 
-// Draws ids of the whole ring until one is sampleable: the index knows which, so there is nothing
-// to keep. Resets and steps whose frames are overwritten are few, so almost every first draw
-// counts. Borrows both; same owner.
+// Draws ids of the whole ring until one is sampleable. The index knows which steps are sampleable,
+// so the selector keeps no list. Resets and steps whose frames are overwritten are few, so almost
+// every first draw succeeds. Borrows ring and index; same owner.
 class UniformSelector final : public Selector {
  public:
-  // If only one step in a thousand is sampleable, a wrong end of the search has probability e^-100.
+  // If one step in a thousand is sampleable, the search fails with probability e^-100.
   static constexpr int kMaxDraws = 100'000;
 
   UniformSelector(const Ring& ring, const EpisodeIndex& index) : ring_(ring), index_(index) {}

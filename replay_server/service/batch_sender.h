@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bulk writes of batches, on a thread of their own: a slow network holds up batches, not
+// Writes batches to the link on a thread of its own, so that a slow network delays batches but not
 // intake.
 //
-// Owns a few batch buffers. The service thread fills one and hands it over; it comes back when all
-// its parts are written or given up. For a batch in a slot of shared memory only the slot message
-// is sent; the caller owns the slot. A batch is given up when its learner session is replaced, when
-// no learner is connected, or when a part could not be written for kPartDeadline: the learner sends
-// its request again.
+// Owns a few batch buffers. The service thread fills one and passes it to Send; the buffer is free
+// again when all parts are written or given up. If a batch is in a slot of shared memory, only the
+// slot message is sent; the caller owns the slot. A batch is given up if its learner session is
+// replaced, if no learner is connected, or if a part could not be written for kPartDeadline. The
+// learner then sends its request again.
 #pragma once
 
 #include <atomic>
@@ -31,10 +31,10 @@ namespace shoal::replay {
 class PartWriter {
  public:
   virtual ~PartWriter() = default;
-  // False when it was not sent within the writer's own deadline.
+  // False if the message was not sent within the writer's own deadline.
   virtual bool Write(const BatchPart& part) = 0;
   virtual bool Write(const BatchSlot& slot) = 0;
-  // A learner is there to read them.
+  // Whether a learner is connected that reads parts, or slot messages.
   virtual bool HasPartReader() = 0;
   virtual bool HasSlotReader() = 0;
 };
@@ -47,19 +47,19 @@ class BatchSender {
   // Borrows the writer. `on_free` is called on the sender's thread whenever a buffer is free again.
   BatchSender(uint64_t spec_hash, uint64_t batch_bytes, int buffers, PartWriter* writer,
               std::function<void()> on_free);
-  // Gives up what is not sent.
+  // Gives up the batches that are not sent yet.
   ~BatchSender();
   BatchSender(const BatchSender&) = delete;
   BatchSender& operator=(const BatchSender&) = delete;
 
-  // A free buffer of batch_bytes, aligned to 64, or nullptr while all are on their way. It stays
-  // free until Send().
+  // A free buffer of batch_bytes, aligned to 64, or nullptr while all buffers are being sent. The
+  // buffer stays free until Send().
   uint8_t* FreeBuffer();
   // Sends the batch in the buffer that FreeBuffer() returned.
   void Send(const DrawnBatch& batch, uint8_t* buffer);
   // Sends the message of a filled slot, unless the same message already waits to be sent.
   void Send(const BatchSlot& slot);
-  // Batches of other sessions are given up.
+  // Batches of other sessions are given up from now on.
   void SetLearnerSession(uint64_t session) { learner_session_ = session; }
 
   uint64_t sent() const { return sent_; }
@@ -68,7 +68,7 @@ class BatchSender {
   double sending_seconds() const { return sending_seconds_; }
 
  private:
-  // Either of them.
+  // A batch in a buffer; a batch in a slot is a BatchSlot.
   struct BufferedBatch {
     DrawnBatch batch;
     uint8_t* buffer = nullptr;
@@ -76,13 +76,13 @@ class BatchSender {
   using Outgoing = std::variant<BufferedBatch, BatchSlot>;
 
   void Run();
-  // The next batch to send; waits for it. Nothing when stopping.
+  // Waits for the next batch to send. Empty when stopping.
   std::optional<Outgoing> TakeNext();
-  // Between tries; ends early when stopping.
+  // Waits between tries; returns early when stopping.
   void Pause();
   bool SendBatch(const BufferedBatch& outgoing);
   bool SendBatch(const BatchSlot& slot);
-  // A BatchPart or a BatchSlot.
+  // `message`: a BatchPart or a BatchSlot.
   bool SendMessage(const auto& message, const std::string& what);
   bool WaitForReader(uint64_t session, bool (PartWriter::*has_reader)());
   bool Wanted(uint64_t session) const { return !stopping_ && session == learner_session_; }
@@ -99,7 +99,7 @@ class BatchSender {
   std::atomic<uint64_t> learner_session_{0};
   std::atomic<uint64_t> sent_{0}, given_up_{0};
   std::atomic<double> sending_seconds_{0};
-  Thread thread_;  // last: starts when everything else is there
+  Thread thread_;  // last: starts after all other members are constructed
 };
 
 }  // namespace shoal::replay

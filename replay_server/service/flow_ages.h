@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// How old things are as they pass through the replay: how far behind the learner the policy was
-// that acted, how long a record took to be stored, how old the steps of a batch are.
+// Measures ages as data passes through the replay: the policy lag of stored records, the time until
+// a record is stored, and the age of the steps in a batch.
 //
-// The learner's progress is known by its requests: with C requests kept outstanding, number r is
-// sent when update r - C begins, so r - C - 1 updates are done.
+// The number of finished updates follows from the learner's requests: with C requests outstanding,
+// request r is sent when update r - C begins, so r - C - 1 updates are done.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace shoal::replay {
 
-// Times are wall-clock nanoseconds since 1970: between hosts, ages are as good as their clocks. One
+// Times are wall-clock nanoseconds since 1970; ages between hosts are as exact as their clocks. One
 // thread.
 class FlowAges {
  public:
@@ -24,9 +24,9 @@ class FlowAges {
       : layout_(layout), request_credits_(static_cast<uint64_t>(request_credits)) {}
 
   void OnRequest(const SampleRequest& request);
-  // A chunk that was dealt with.
+  // Records the ages of a chunk that was processed.
   void OnChunk(const TransitionChunk& chunk, int64_t now_ns);
-  // The steps of a batch that was drawn.
+  // Records the ages of the steps of a batch that was drawn.
   void OnBatch(const BatchPlan& plan, const Ring& ring, int64_t now_ns);
   // Adds policy_lag (updates), store_age_seconds and data_age_seconds of the interval that ended.
   void Report(MetricsReport* report);

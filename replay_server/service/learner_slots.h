@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shared memory in which the present learner session gets its batches: none where the learner
-// takes none, could not open it, or there is no room; its batches then go over the network. Which
-// it is, and why, is logged once per session.
+// Shared memory in which the present learner session receives its batches. Batches are sent over
+// the network if the learner accepts no slots, could not open the memory, or there is no room. The
+// choice and its reason are logged once per session.
 //
-// Threads: none inside; the service thread's.
+// Threads: none inside; used by the service thread.
 #pragma once
 
 #include <cstdint>
@@ -18,15 +18,15 @@ namespace shoal::replay {
 
 class LearnerSlots {
  public:
-  // `slots`: what a learner may have asked for and hold at once. `room`: AvailableMemory, or a
-  // fake.
+  // `slots`: most batches that a learner may have requested and hold at once. `room`:
+  // AvailableMemory, or a fake.
   LearnerSlots(
       uint64_t spec_hash, uint64_t batch_bytes, uint32_t slots,
       std::function<MemoryRoom()> room = [] { return AvailableMemory(); });
 
-  // A request of the session that is being answered, or of a newer one; each time it comes.
+  // Call for every request of the present learner session or of a newer one, repeats included.
   void OnRequest(const SampleRequest& request);
-  // nullptr: batches go over the network.
+  // nullptr: batches are sent over the network.
   SlotWriter* writer() { return writer_ ? &*writer_ : nullptr; }
   uint32_t held() const { return writer_ ? writer_->held() : 0; }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Losses and refusals, logged once per interval as one line each, with their numbers.
+// Logs losses and refusals, each kind in one line per interval, with counts.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,8 @@ class ProblemLog {
     intake_.Note(chunk, result);
   }
   void NoteRefused(const SampleRequest& request) { refused_request_ = request; }
-  // Logs what has grown since the last line, at most once per IntakeProblems::kInterval.
+  // Logs the counts that have grown since the last line, at most once per
+  // IntakeProblems::kInterval.
   void Report(SteadyTime now, const CoreCounters& counters, uint64_t dropped_chunks);
 
  private:

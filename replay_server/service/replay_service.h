@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The replay server: the core, owned by the thread that calls Run(), between the link's threads
-// (service_inbox.h) and the batch sender's thread (batch_sender.h).
+// The replay server. The thread that calls Run() owns the core; service_inbox.h connects this
+// thread with the link's threads, batch_sender.h with the sender's thread.
 #pragma once
 
 #include <cstdint>
@@ -35,17 +35,17 @@
 
 namespace shoal::replay {
 
-// Members are in construction order; destruction, the reverse, ends the readers' callbacks and the
-// sender before what they use.
+// Members are in construction order. Destruction in reverse order ends the readers' callbacks and
+// the sender before the objects that they use.
 class ReplayService {
  public:
-  // The replay server `name` of the run in `folder`. Takes over from a former one: reads its ring,
-  // which can take minutes. Borrows the hub. Throws Error.
+  // Makes the replay server `name` of the run in `folder`. Takes over the ring of an earlier
+  // server, which can take minutes to read. Borrows the hub. Throws Error.
   ReplayService(const std::filesystem::path& folder, const ProcessName& name, link::Hub& hub);
 
-  // Serves until the coordinator says stop (0), a stop is requested (0), or the coordinator is gone
-  // (1: what the actors still send is stored first). Leaves accounting.json; kUnwrittenExit where
-  // that could not be written. Throws Error.
+  // Serves until the coordinator orders a stop (returns 0), a stop is requested (0), or the
+  // coordinator is lost (1, after storing the records that actors still send). Writes
+  // accounting.json; returns kUnwrittenExit if the file cannot be written. Throws Error.
   int Run();
 
  private:
@@ -54,19 +54,20 @@ class ReplayService {
   SendingWindow Window() const;
   size_t MaxChunks() const;
 
-  // A restart would find the same full table.
+  // Throws Error (usage): a restart would find the same full session table.
   [[noreturn]] static void RefuseMoreSessions();
 
-  // Reading a cold ring takes minutes, in which a process that says nothing would be taken for
-  // hung.
+  // Reports progress while a cold ring is read, which takes minutes; a silent process would be
+  // declared hung.
   void ReportStarting();
 
-  // One turn of the service: takes what came, answers one request, tells what has changed.
+  // One turn of the service: takes arrivals, answers one request, sends changed credits and
+  // progress.
   void Turn();
 
   void TellChangedCredits(SteadyTime now);
 
-  // Sends the counts by which the coordinator knows the run's env steps.
+  // Sends the counts from which the coordinator computes the run's env steps.
   void TellProgress(SteadyTime now, bool at_once = false);
 
   void ApplySettings();
@@ -85,17 +86,18 @@ class ReplayService {
 
   void Publish(const std::vector<Credit>& credits);
 
-  // replay.threads = 0: for the next second as many as the last one asked for.
+  // If replay.threads = 0, chooses the number of gather threads for the next second from the load
+  // of the last one.
   void ChooseGatherers(SteadyTime now);
 
   void Report(const char* state);
 
   RunAccount AccountNow() const;
 
-  // Keeps storing after the coordinator is lost, until the actors, which notice it too, go quiet.
+  // Keeps storing records after the coordinator is lost, until the actors stop sending.
   void DrainAfterCoordinatorLoss();
 
-  // False when the account could not be written.
+  // Returns false if the account could not be written.
   bool Finish();
 
   const std::filesystem::path folder_;
@@ -130,8 +132,8 @@ class ReplayService {
   SteadyTime last_told_{};
   std::optional<SteadyTime> progress_told_;
   uint64_t told_records_ = 0;
-  bool credits_wait_ = false;  // words about credit are being collected
-  bool answered_ = false;      // a batch in the last turn: there may be another one to draw
+  bool credits_wait_ = false;  // changed credits are being collected before they are sent
+  bool answered_ = false;      // the last turn answered a request: another may be due
 };
 
 }  // namespace shoal::replay

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the DDS receive threads to the service thread: chunks copied into pooled buffers, and batch
-// requests. Everything is bounded; what does not fit is dropped and counted, and its sender sends
-// it again.
+// Queue from the DDS receive threads to the service thread: chunks, copied into pooled buffers, and
+// batch requests. Everything is bounded. Messages that do not fit are dropped and counted; their
+// sender sends them again.
 #pragma once
 
 #include <cstdint>
@@ -24,24 +24,25 @@ class ServiceInbox {
   ServiceInbox(uint64_t spec_hash, uint64_t chunk_bytes, size_t max_chunks)
       : pool_(spec_hash, chunk_bytes, max_chunks) {}
 
-  // Receive threads. Never block for long: one lock, one copy outside of it. The payload of a chunk
-  // of another spec or larger than chunk_bytes is left out.
+  // The receive threads call both functions, which take one lock briefly and copy outside of it.
+  // The payload of a chunk is omitted if the chunk has another spec or is larger than chunk_bytes.
   void OnChunk(const TransitionChunk& chunk);
   void OnRequest(const SampleRequest& request);
-  // Any thread: makes a waiting or the next Wait() return.
+  // Any thread: makes the present Wait(), or else the next one, return.
   void Wake();
 
   struct Arrivals {
     std::deque<std::unique_ptr<PooledChunk>> chunks;
     std::deque<SampleRequest> requests;
   };
-  // Service thread: everything that arrived, in order; waits for it, or Wake(), until `deadline`.
+  // Service thread: returns everything that arrived, in order. Waits for an arrival or Wake(),
+  // until `deadline`.
   Arrivals Wait(SteadyTime deadline);
-  // Service thread: gives a buffer back.
+  // Service thread: returns a buffer to the pool.
   void Release(std::unique_ptr<PooledChunk> chunk) { pool_.Release(std::move(chunk)); }
   void SetMaxChunks(size_t max_chunks) { pool_.SetMaxChunks(max_chunks); }
 
-  // Waiting chunks and requests; what was dropped since construction.
+  // Depth: waiting chunks and requests. The others: messages dropped since construction.
   size_t Depth() const;
   uint64_t DroppedChunks() const { return pool_.Dropped(); }
   uint64_t DroppedRequests() const;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The replay's 1 Hz report. Counts are since the process started; stored_records and stored_steps
-// are of the whole run.
+// The replay's report, once a second. Counts are since the process started; stored_records and
+// stored_steps count the whole run.
 #pragma once
 
 #include <algorithm>
@@ -20,16 +20,16 @@ namespace shoal::replay {
 
 // Use of the service thread's time since its start, in seconds.
 struct ServiceSeconds {
-  double inserting = 0;  // chunks into the ring
-  double sampling = 0;   // batches out of it
-  double idle = 0;       // waiting for either
-  // Time in which inserts or samples were held back, also while doing any of the above.
+  double inserting = 0;  // storing chunks in the ring
+  double sampling = 0;   // drawing batches from the ring
+  double idle = 0;       // waiting for chunks or requests
+  // Time in which inserts or samples were held back; it overlaps the times above.
   double blocked_insert = 0, blocked_sample = 0;
 };
 
 class ServiceReport {
  public:
-  // Borrows all of them but the name.
+  // Borrows all arguments except the name.
   ServiceReport(const ProcessName& name, const ReplayCore& core, const ServiceInbox& inbox,
                 const BatchSender& sender, const LearnerSlots& slots,
                 const GatherThreads& gatherers)
@@ -40,12 +40,12 @@ class ServiceReport {
         gatherers_(gatherers),
         report_(name) {}
 
-  // A chunk waited this long in the inbox.
+  // Notes how long a chunk waited in the inbox.
   void NoteQueueAge(double seconds) { queue_age_seconds_ = std::max(queue_age_seconds_, seconds); }
-  // A batch was drawn into a slot.
+  // Counts a batch that was drawn into a slot.
   void NoteSlotBatch() { ++slot_batches_; }
   bool Due(SteadyTime now) { return report_.Due(now); }
-  // Fills in every figure. Empties the windows of `ages`.
+  // Computes all figures of the report. Empties the windows of `ages`.
   const MetricsMessage& Make(const std::string& state, const ServiceSeconds& seconds,
                              FlowAges* ages);
 

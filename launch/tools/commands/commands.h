@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The commands of the tools, one file each. launch/commands/commands.h says how a command adds
-// itself.
+// The commands of the tools, one file each. launch/commands/commands.h describes how a command is
+// added to the program.
 #pragma once
 
 #include "launch/commands/commands.h"

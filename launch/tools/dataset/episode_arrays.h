@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // One episode as Minari lays it out in an HDF5 file: T steps, T + 1 observations.
 //
-//   episode_N/                  attributes id = N, total_steps = T; env, episode: which one of the
-//   run
-//     observations/BLOCK        (T+1, size) f32, each block of the records, seen by the policy or
-//     not observations/pixels       (T+1, C, H, W) u8: single frames, no stacks actions (T, A) f32
-//     in [-1, 1], as taken rewards                   (T,) f32, unscaled terminations, truncations
-//     (T,) bool infos/distance            (T+1,) f32, m; infos/is_success (T+1,) bool: where the
-//     task has goals
+//   episode_N/                    attributes id = N, total_steps = T, env, episode (in the run)
+//     observations/BLOCK          (T+1, size) f32: each recorded block, observed or not
+//     observations/pixels         (T+1, C, H, W) u8: single frames, no stacks
+//     actions                     (T, A) f32 in [-1, 1], as the actor chose them
+//     rewards                     (T,) f32, unscaled
+//     terminations, truncations   (T,) bool
+//     infos/distance              (T+1,) f32, m; only for tasks with goals
+//     infos/is_success            (T+1,) bool; only for tasks with goals
 #pragma once
 
 #include <cstdint>
@@ -18,12 +19,13 @@
 
 namespace shoal::launch {
 
-// Throws Error (usage) naming a block whose name is none for an array: one with a slash, a dot
-// alone, or `pixels` beside pixels.
+// Throws Error (usage) naming a block whose name cannot be the name of an array: a name with a
+// slash, a single dot, or `pixels` if the spec has pixels.
 void CheckArrayNames(const ObservationSpec& spec);
 
-// Writes episode `number`. `records`: one after the other, the reset first and at least one step,
-// RecordLayout(spec).record_bytes() each, aligned to 8. Throws Error as Hdf5File does.
+// Writes episode `number`. `records`: the records of the episode one after the other, first the
+// reset, then at least one step; RecordLayout(spec).record_bytes() each, aligned to 8. Throws Error
+// as Hdf5File does.
 void WriteEpisode(const ObservationSpec& spec, std::span<const uint8_t> records, uint64_t number,
                   Hdf5File* file);
 

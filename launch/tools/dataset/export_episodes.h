@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Episodes out of a run's replay ring as a dataset of Minari's.
+// Exports episodes from a run's replay ring as a Minari dataset.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,16 @@ namespace shoal::launch {
 
 struct EpisodeExport {
   RunConfig run;
-  std::filesystem::path ring;    // its replay.ring
+  std::filesystem::path ring;    // replay.ring of the run
   std::filesystem::path output;  // the HDF5 file; metadata.json is written beside it
-  uint64_t episodes = 0;         // at most so many; 0: all
-  bool last = false;             // those that ended last, not first
+  uint64_t episodes = 0;         // largest number of episodes; 0: all
+  bool last = false;             // exports the newest episodes, not the oldest
 };
 
 struct ExportedEpisodes {
   uint64_t episodes = 0, steps = 0;
   uint64_t bytes = 0;                     // of the HDF5 file
-  uint64_t overwritten = 0, unended = 0;  // left out: the beginning or the end is not stored
+  uint64_t overwritten = 0, unended = 0;  // left out: beginning or end not stored
 };
 
 // Exports whole episodes only, in the order in which they ended. A server may be writing to the

@@ -11,13 +11,13 @@
 
 namespace shoal::launch {
 
-// The file has another name (PATH.tmp-PID) until Finish, and goes away where that is not called.
-// The library's own messages are not shown: its reasons are in the errors. One thread: HDF5 as
-// Debian builds it knows no others.
+// The file has a temporary name (PATH.tmp-PID) until Finish; without Finish the destructor removes
+// the file. Messages of the HDF5 library are not printed; errors contain its reasons. One thread:
+// Debian's build of HDF5 is not thread-safe.
 //
-// Names of arrays are paths, "episode_0/observations/grip", whose groups are made where they are
-// missing. Shapes are in rows, the first dimension counts them; values row-major. CHECK: shape and
-// number of values agree. All of it throws Error naming the file and the reason.
+// Names of arrays are paths, such as "episode_0/observations/grip"; missing groups are created. The
+// first dimension of a shape counts the rows; values are row-major. CHECK: the number of values
+// matches the shape. Every member throws Error naming the file and the reason.
 class Hdf5File {
  public:
   explicit Hdf5File(const std::filesystem::path& path);
@@ -25,14 +25,15 @@ class Hdf5File {
 
   void Write(const std::string& name, const std::vector<uint64_t>& shape,
              std::span<const float> values);
-  // Bytes are compressed, a row at a time: pictures that a reader takes one by one.
+  // Compresses the bytes row by row, because readers take pictures one at a time.
   void Write(const std::string& name, const std::vector<uint64_t>& shape,
              std::span<const uint8_t> values);
-  // One-dimensional; 0 or 1 each. As h5py stores numpy's bool: an enumeration FALSE, TRUE of int8.
+  // Writes a one-dimensional array of flags, 0 or 1 each, as h5py stores numpy's bool: an int8
+  // enumeration FALSE, TRUE.
   void WriteFlags(const std::string& name, std::span<const uint8_t> values);
   void SetAttribute(const std::string& group, const std::string& name, int64_t value);
 
-  // Completes the file and gives it its name. Once.
+  // Completes the file and renames it to its final name. Call once.
   void Finish();
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The aggregates of an experiment's arms, as summary.json and the summary's table have them.
+// Aggregates of an experiment's arms, for summary.json and for the table of the summary.
 #pragma once
 
 #include <cstddef>
@@ -13,9 +13,10 @@ namespace shoal::launch {
 
 constexpr char kSummarySchema[] = "shoal-experiment-1";
 
-// Values of a summary's n_to_target_rule. `together`: the first evaluations in a row whose pooled
-// episodes reach the target (launch/record/first_reached.h). `each`: the first two of which each
-// reaches it, the rule of builds whose summaries do not name one.
+// Values of a summary's n_to_target_rule. `together`: the first consecutive evaluations whose
+// pooled episodes reach the target (launch/record/first_reached.h). `each`: the first two
+// consecutive evaluations that both reach the target; older builds, whose summaries name no rule,
+// used this one.
 constexpr char kReachedTogether[] = "together", kReachedByEach[] = "each";
 
 // Sets `success`, `return` and `final_distance` of an arm's object.
@@ -26,7 +27,7 @@ struct ArmRow {
   SeedFigures figures{};
   size_t runs = 0;
 };
-// Lines of equal columns below a line of headings.
+// Table text: a line of headings and a line per arm, in aligned columns.
 std::string ArmTable(const std::vector<ArmRow>& arms);
 
 }  // namespace shoal::launch

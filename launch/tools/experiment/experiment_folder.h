@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The folder of an experiment:
 //
-//   experiment.json   the definition and the base as it was resolved at the first run: both hold
-//   configs/ARM.json  what `shoal train` of an arm is given
+//   experiment.json   the definition, and the base as resolved at the first run; both are binding
+//   configs/ARM.json  configuration of `shoal train` for an arm
 //   runs/ARM-sSEED/   the runs, each an ordinary run folder
-//   logs/ARM-sSEED.log  what `shoal train` said
-//   runs.jsonl        when which run was started and how that ended (run_log.h)
-//   summary.json      after every run (summary.h)
+//   logs/ARM-sSEED.log  output of `shoal train`
+//   runs.jsonl        starts and ends of the runs (run_log.h)
+//   summary.json      rewritten after every run (summary.h)
 #pragma once
 
 #include <filesystem>
@@ -30,55 +30,56 @@ struct ExperimentRun {
   std::filesystem::path folder{};  // of the run
 };
 
-// An experiment as its folder holds it. Reads only.
+// An experiment as stored in its folder. Only reads the folder.
 struct StoredExperiment {
   std::filesystem::path folder{};
   Definition definition{};
   Config base{};
   std::string created{};  // UTC
 
-  // Arms x seeds, seed by seed, so that an experiment cut short has whole comparisons.
+  // All arms of one seed, then of the next seed: an experiment that is stopped early then has
+  // complete comparisons.
   std::vector<ExperimentRun> Runs(const std::vector<int64_t>& seeds) const;
-  // "ARM-sSEED" of any seed; empty where there is no such arm.
+  // The run named "ARM-sSEED", for any seed; empty if there is no such arm.
   std::optional<ExperimentRun> RunNamed(const std::string& name) const;
-  // Runs of every seed that the definition names and of every seed that has a run: in its folder,
-  // or, if it failed before it had one, in the log. Throws Error on a broken log.
+  // Runs of every seed that the definition names, and of every other seed with a run in the folder
+  // or, if the run failed before it had a folder, in the log. Throws Error on a broken log.
   std::vector<ExperimentRun> Runs() const;
-  // How one of them stands, its evaluations on further tasks included; `log` as Log().Read() gives
-  // it.
+  // Status of a run, including its evaluations on further tasks. `log`: result of Log().Read().
   StandingReport Standing(const ExperimentRun& run,
                           const std::map<std::string, LoggedRun>& log) const;
   std::filesystem::path LogFile(const ExperimentRun& run) const;
   RunLog Log() const { return RunLog(folder / "runs.jsonl"); }
 };
 
-// Throws Error: no experiment.json, or a broken one.
+// Reads the experiment. Throws Error: experiment.json is missing or broken.
 StoredExperiment ReadExperiment(const std::filesystem::path& folder);
 
-// Experiments as commands take them: by name within `dir`, or by folder (FindNamed).
+// Experiments as arguments of commands: by name within `dir`, or by folder (FindNamed).
 NamedKind ExperimentsIn(const std::filesystem::path& dir = "experiments");
 // Whether the folder holds an experiment.
 bool IsExperiment(const std::filesystem::path& folder);
 
-// An experiment that may be run: every arm has been checked, and so has the folder.
+// An experiment that may be run: every arm and the folder have been checked.
 struct ExperimentPlan {
-  StoredExperiment experiment{};  // with the definition that was asked for
+  StoredExperiment experiment{};  // with the requested definition
   std::vector<Config> arms{};     // resolved, in the order of the definition
-  std::string source{};           // of the definition, for errors
+  std::string source{};           // name of the definition, for errors
 };
 
-// Writes nothing. Throws Error (usage) where an arm or a further task is refused, or the folder
-// holds something else than an experiment or another one: another name, base, `set`,
-// final_episodes or first arm, an arm of that name with other keys, or an arm that is no longer
-// asked for. What else may differ takes the place of what was there.
+// Checks the arms and the folder; writes nothing. Throws Error (usage) if an arm or a further task
+// is refused, if the folder holds something other than an experiment, or if it holds an
+// incompatible experiment: another name, base, `set`, final_episodes or first arm, an arm of the
+// same name with other keys, or an arm that the definition no longer has. Other differences replace
+// the stored values.
 ExperimentPlan PlanExperiment(const std::filesystem::path& folder, const Definition& definition,
                               const std::string& source);
 
-// Holds an experiment against a second command until destruction (or death).
+// Locks an experiment against a second command, until destruction or the death of the process.
 class ExperimentFolder {
  public:
-  // Makes the folder, or opens the one that is there. Throws Error (usage) before anything else is
-  // written where another process runs it, or has made another experiment of it since the plan.
+  // Makes the folder, or opens the existing one. Throws Error (usage), before anything else is
+  // written, if another process runs the experiment or has changed it since the plan.
   explicit ExperimentFolder(const ExperimentPlan& plan);
 
   const StoredExperiment& experiment() const { return experiment_; }
@@ -88,12 +89,12 @@ class ExperimentFolder {
   std::optional<FileLock> lock_;
 };
 
-// Holds an experiment together with others that do single runs of it, on any host, against a
-// command that runs it whole.
+// Shared lock on an experiment: processes on any host may execute single runs at the same time,
+// while a command that runs the whole experiment is locked out.
 class ExperimentShare {
  public:
-  // Waits a minute for the command that submits such runs. Throws Error (usage): no experiment
-  // there, or a command runs it whole.
+  // Waits up to a minute for the command that submits such runs. Throws Error (usage): there is no
+  // experiment in the folder, or a command runs the whole experiment.
   explicit ExperimentShare(const std::filesystem::path& folder);
 
   const StoredExperiment& experiment() const { return experiment_; }
@@ -103,7 +104,7 @@ class ExperimentShare {
   StoredExperiment experiment_;
 };
 
-// Whether a process runs the experiment of this folder, or a run of it.
+// Whether a process runs the experiment of this folder, or a single run of the experiment.
 bool IsExperimentHeld(const std::filesystem::path& folder);
 
 }  // namespace shoal::launch

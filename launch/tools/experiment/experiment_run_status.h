@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a run of an experiment stands.
+// Status of a run of an experiment.
 #pragma once
 
 #include <filesystem>
@@ -12,25 +12,26 @@
 namespace shoal::launch {
 
 enum class ExperimentRunStatus {
-  kMissing,      // not begun
-  kRunning,      // a coordinator holds it
-  kInterrupted,  // stopped, or its processes died: --resume goes on
-  kFailed,       // ended by itself and not well
+  kMissing,      // not started
+  kRunning,      // a coordinator holds the run
+  kInterrupted,  // stopped, or its processes died; --resume continues
+  kFailed,       // ended by itself with an error
   kFinished,     // target reached or budget spent, evaluated at the end and on every further task
 };
 const char* ToString(ExperimentRunStatus standing);
 
 struct StandingReport {
   ExperimentRunStatus standing = ExperimentRunStatus::kMissing;
-  std::string problem{};  // why it failed
-  // Further tasks that it is still to be evaluated on; only of a run whose training is done.
+  std::string problem{};  // reason of the failure
+  // Further tasks on which the run has no evaluation yet; only for a run whose training is
+  // finished.
   std::vector<std::string> missing_transfers{};
 };
 
-// From the run's folder, what the experiment's log knows of it (null: nothing) and the further
-// tasks that the experiment evaluates it on: a run is not finished before all of them are done. One
-// of the task that it was trained on is left out, unless training drew its masses anew. Never
-// throws for what is in the folder: a broken file makes it a failed run.
+// Status from the run's folder, its entries in the experiment's log (null: none) and the further
+// tasks: a run is not finished before it is evaluated on all of them. The task of the training is
+// left out, unless training randomised its masses. Never throws because of the folder's content: a
+// broken file makes the run failed.
 StandingReport StandingOf(const std::filesystem::path& run, const LoggedRun* logged,
                           const std::vector<std::string>& transfer = {});
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Does the runs of an experiment: a process tree of `shoal train` for each, and the evaluations on
-// further tasks after it.
+// Executes the runs of an experiment: a process tree of `shoal train` for each run, then the
+// evaluations on further tasks.
 #pragma once
 
 #include <optional>
@@ -11,17 +11,17 @@
 
 namespace shoal::launch {
 
-// The CPUs this process may run on, as many as the cgroups grant time for, in `jobs` parts of
-// neighbours; the first ones get one more where it does not divide. Throws Error (usage) where
-// there are fewer CPUs than jobs.
+// Divides `cores` into `jobs` parts of neighbouring CPUs; the first parts get one more if the
+// division leaves a remainder. Throws Error (usage) if there are fewer CPUs than jobs.
 std::vector<std::vector<int>> SplitCores(const std::vector<int>& cores, int jobs);
+// The CPUs that this process may run on, at most as many as the cgroups grant time for.
 std::vector<int> OwnCores();
 
 // One thread, which must live as long as the children (child_process.h).
 class ProcessRunner : public RunKeeper {
  public:
-  // Borrows the experiment. More than one job: each slot's runs get the cores of their part alone.
-  // `side_by_side`: runs that may be under way at the same time, those of other keepers included.
+  // Borrows the experiment. With several jobs, the runs of a slot use only the cores of its part.
+  // `side_by_side`: runs that may execute at the same time, including those of other keepers.
   ProcessRunner(const StoredExperiment& experiment, int jobs, int side_by_side);
 
   StandingReport Standing(const ExperimentRun& run) override;
@@ -36,9 +36,9 @@ class ProcessRunner : public RunKeeper {
     std::optional<ChildProcess> process;
   };
 
-  // Ready but for the cores.
+  // The process of the training, without the cores.
   ProcessSpec Training(const ExperimentRun& run) const;
-  // Evaluation on a further task.
+  // The process of the evaluation on a further task, without the cores.
   ProcessSpec Transfer(const ExperimentRun& run, const std::string& task) const;
   void Launch(ProcessSpec spec, Slot& slot);
   void LogEnding(const ExperimentRun& run, const ExitStatus& status) const;

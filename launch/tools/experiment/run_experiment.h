@@ -13,36 +13,36 @@ struct ExperimentOptions {
   std::string definition;         // file, or name of one in launch/data/experiments
   std::vector<int64_t> seeds;     // empty = the definition's
   std::vector<std::string> arms;  // by name; empty = all
-  // Runs side by side, each with cores of its own (default 1); of an array, tasks at a time
+  // Runs at the same time, each with cores of its own (default 1); for a job array, tasks at a time
   // (default: all).
   std::optional<int> jobs;
   std::string out;  // folder; empty = experiments/NAME
   bool retry_failed = false;
-  bool dry_run = false;  // check everything, the folder included; start and make nothing
-  bool slurm = false;    // submit what is to be done as a job array
+  bool dry_run = false;  // checks everything, including the folder; starts and writes nothing
+  bool slurm = false;    // submits the unfinished runs as a job array
   std::vector<std::string> sbatch_options;
 };
 
-// One run of an experiment, as a task of an array does it.
+// One run of an experiment, executed by one task of a job array.
 struct ExperimentTask {
   std::string folder;
   std::string run;       // ARM-sSEED
-  int side_by_side = 1;  // tasks that may be under way at the same time, this one included
+  int side_by_side = 1;  // tasks that may execute at the same time, including this one
   bool retry_failed = false;
 };
 
-// Does what is still to be done of the experiment. Progress goes to stderr; stdout gets one line of
-// JSON for each run that is done with: {run, arm, seed, status, objective, path}. 0 once every run
-// is finished, 1 when one is not, kInterruptedExit (stop.h) after Ctrl-C. Throws Error before
-// anything is written where the definition, the folder or an arm is refused.
+// Executes the unfinished runs of the experiment. Progress is written to stderr; stdout gets one
+// line of JSON for each processed run: {run, arm, seed, status, objective, path}. Returns 0 if
+// every run is finished, 1 if not, kInterruptedExit (stop.h) after Ctrl-C. Throws Error, before
+// anything is written, if the definition, the folder or an arm is refused.
 //
-// A job array (--slurm) is submitted instead, and stdout gets one line of JSON, {job, script,
-// runs}; 0 unless Slurm refuses.
+// If --slurm is given, submits a job array instead and writes one line of JSON, {job, script,
+// runs}, to stdout. Returns 0 unless Slurm refuses.
 int RunExperiment(const ExperimentOptions& options);
 
-// Does one run; output and exit code as RunExperiment's. Any number of these may run of an
-// experiment, on any hosts that share its folder. Throws Error: no experiment there, no such run,
-// or a command runs the experiment whole.
+// Executes one run; output and exit code are those of RunExperiment. Any number of processes may do
+// so for one experiment, on any hosts that share its folder. Throws Error: no experiment in the
+// folder, no such run, or a command runs the whole experiment.
 int RunExperimentTask(const ExperimentTask& task);
 
 }  // namespace shoal::launch

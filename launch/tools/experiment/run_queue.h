@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The order in which the runs of an experiment are done: what is finished is skipped, what was
-// interrupted goes on, past what failed the next one begins. Knows no processes and no files: they
-// are behind RunKeeper.
+// Order in which the runs of an experiment are executed: finished runs are skipped, interrupted
+// runs are continued, and a failed run does not stop the following ones. RunKeeper hides processes
+// and files from the queue.
 #pragma once
 
 #include <functional>
@@ -18,11 +18,11 @@ class RunKeeper {
   virtual ~RunKeeper() = default;
 
   virtual StandingReport Standing(const ExperimentRun& run) = 0;
-  // Begins the run, or goes on with it, on the cores of a free slot (0 <= slot < jobs).
+  // Starts or continues the run on the cores of a free slot (0 <= slot < jobs).
   virtual void Start(const ExperimentRun& run, int slot) = 0;
   // Whether the run of this slot has ended; does not wait. Once true, the slot is free.
   virtual bool Ended(int slot) = 0;
-  // Asks every run under way to stop in order; asked again, at once.
+  // First call: asks every active run to stop in order. Second call: stops the runs at once.
   virtual void Stop() = 0;
 };
 
@@ -32,16 +32,16 @@ struct QueueTerms {
 };
 
 struct QueueHooks {
-  std::function<int()> stops;  // how many times a stop was asked for
-  std::function<void()> wait;  // between two looks at the runs
+  std::function<int()> stops;  // number of stop requests so far
+  std::function<void()> wait;  // waits between two polls of the runs
   std::function<void(const std::string&)> say;
-  // The run is done with for now: skipped, or ended.
+  // Called for each run that is skipped or has ended.
   std::function<void(const ExperimentRun&, const StandingReport&)> done;
 };
 
-// Does every run once, in order, until all are done with or a stop was asked for and what was under
-// way has ended. A run that another process still holds is put off: processes of a killed command
-// need a while to end.
+// Executes every run once, in order, until all are processed, or until a stop was requested and the
+// active runs have ended. A run that another process still holds is postponed: the processes of a
+// killed command need some time to exit.
 void DoRuns(const std::vector<ExperimentRun>& runs, const QueueTerms& terms, RunKeeper& keeper,
             const QueueHooks& hooks);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Results of a run, finished or not, read from its folder: the figures of comparisons, plots and
-// reports. Reads config.json, meta.json and eval/ alone, so that a committed copy without
-// checkpoints serves as well.
+// Results of a run, finished or not, read from its folder, for comparisons, plots and reports.
+// Reads only config.json, meta.json and eval/, so a committed copy without checkpoints is
+// sufficient.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace shoal::launch {
 
-// The folder without a slash at its end, which typing it often leaves: its last part is its name.
+// The folder without a trailing slash, so that its last part is the name of the run.
 std::filesystem::path NamedFolder(const std::filesystem::path& folder);
 
 struct RunResults {
@@ -31,22 +31,23 @@ struct RunResults {
   std::string exit{}, error{}, started{}, finished{}, precision{};
   std::vector<std::string> commits{};  // builds that took part, in order
   std::string cpu{};
-  int cores = 0;  // of the machine that it could use
+  int cores = 0;  // of the machine, usable by the run
   uint64_t env_steps = 0, updates = 0;
   double wall_seconds = 0;
 
-  // The figure that a tuner maximises: the final success rate, or the final mean return if the task
-  // has no success; empty without a final evaluation.
+  // Value that a tuner maximises: the final success rate, or the final mean return if the task has
+  // no success. Empty without a final evaluation.
   std::optional<double> Objective() const;
 };
 
-// Throws Error: no config.json, or a broken file.
+// Throws Error: config.json is missing, or a file is broken.
 RunResults ReadRunResults(const std::filesystem::path& run);
 
-// The first of the first stop.evaluations (two by default) evaluations in a row whose episodes,
-// pooled, have at least this success (launch/record/first_reached.h); null = not reached.
+// Finds the first series of stop.evaluations (two by default) consecutive evaluations whose pooled
+// episodes have at least this success (launch/record/first_reached.h). Returns the first evaluation
+// of the series; null = not reached.
 const EvaluationFigures* FirstReaching(const RunResults& run, double success);
-// The env steps at that one; empty = not reached.
+// Env steps at the evaluation that FirstReaching returns; empty = not reached.
 std::optional<uint64_t> StepsToSuccess(const RunResults& run, double success);
 
 }  // namespace shoal::launch

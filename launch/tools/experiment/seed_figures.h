@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Results of one method over its seeds with intervals, and their form in summaries, comparisons and
-// reports. Seeds are the unit (statistics.h).
+// Results of one method over its seeds, with intervals, and their form in summaries, comparisons
+// and reports. The unit of the statistics is the seed (statistics.h).
 #pragma once
 
 #include <cstdint>
@@ -14,40 +14,41 @@
 namespace shoal::launch {
 
 struct SeedFigures {
-  std::vector<SeedSuccess> successes{};        // of each seed; none where the task has no success
+  std::vector<SeedSuccess> successes{};        // of each seed; empty if the task has no success
   std::vector<double> returns{}, distances{};  // means of each seed; distances in m
-  // Seeds whose run failed (numbers that were not finite, a process that died). They are in none of
-  // the vectors, and every line and object says how many there are.
+  // Seeds whose run failed (numbers that were not finite, a process that died). The vectors exclude
+  // these seeds; every line and object states their number.
   size_t failed = 0;
 
-  // The evaluation that judges one seed.
+  // Adds one seed: the evaluation that gives its result.
   void Add(std::optional<double> success, size_t episodes, double return_mean,
            std::optional<double> distance);
 
   uint64_t Successes() const;
   uint64_t Episodes() const;
   std::vector<double> Rates() const;
-  // Mean of the seeds' rates, a failed seed as 0; empty without any seed, or without success.
+  // Mean of the seeds' rates, with 0 for each failed seed; empty without seeds or without success.
   std::optional<double> RateWithFailedAsZero() const;
 };
 
 // {pooled, episodes, mean, seeds, ci95, wilson95, failed, mean_with_failed_as_0}: `mean` and `ci95`
-// are over seeds, `wilson95` is that of the one policy where there is one seed, else null.
+// are over seeds; `wilson95` is the interval of the policy if there is one seed, else null.
 nlohmann::ordered_json SuccessJson(const SeedFigures& figures);
 // {mean, ci95, seeds, failed}.
 nlohmann::ordered_json ReturnJson(const SeedFigures& figures);
 nlohmann::ordered_json DistanceJson(const SeedFigures& figures);
 
-// "97.3 % [94.1, 98.9] (292/300)" of one seed, "96.5 % [89.0, 100.0] (3 seeds, 1158/1200)" of
-// several; "(2 seeds, 792/800; 1 failed: 66.0 % with it as 0)"; "-" where there is nothing to say.
+// One seed: "97.3 % [94.1, 98.9] (292/300)". Several seeds: "96.5 % [89.0, 100.0] (3 seeds,
+// 1158/1200)". With a failed seed: "(2 seeds, 792/800; 1 failed: 66.0 % with it as 0)". Without
+// results: "-".
 std::string FormatSuccess(const SeedFigures& figures);
-// "-0.82 [-0.91, -0.73] (3 seeds)"; "-0.82 (1 seed)"; "(2 seeds; 1 failed, left out)". As many
-// digits as the interval bears.
+// "-0.82 [-0.91, -0.73] (3 seeds)"; "-0.82 (1 seed)"; "(2 seeds; 1 failed, left out)". The number
+// of digits follows from the width of the interval.
 std::string FormatReturn(const SeedFigures& figures);
-// The same in centimetres.
+// Formats distances like returns, in centimetres.
 std::string FormatDistance(const SeedFigures& figures);
 
-// Interval of the distances' mean, m: not below 0.
+// Interval of the mean distance, m; not below 0.
 std::optional<Interval> DistanceInterval95(const std::vector<double>& distances);
 
 }  // namespace shoal::launch

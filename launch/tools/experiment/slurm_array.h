@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The runs of an experiment as a Slurm job array, one run a task: Slurm places them, each does
-// `shoal experiment task`.
+// Runs of an experiment as a Slurm job array, one run per task. Slurm places the tasks; each task
+// calls `shoal experiment task`.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@ namespace shoal::launch {
 
 struct ArrayTerms {
   std::optional<int> at_once{};               // tasks that Slurm may run at a time; empty = any
-  std::vector<std::string> sbatch_options{};  // as sbatch takes them; over those of the script
+  std::vector<std::string> sbatch_options{};  // of sbatch; they override those of the script
 };
 
 struct SlurmArray {
@@ -25,18 +25,18 @@ struct SlurmArray {
 };
 nlohmann::ordered_json ToJson(const SlurmArray& array);
 
-// The runs among `runs` that an array would do: missing or interrupted ones, and failed ones on
-// request.
+// The runs among `runs` that an array would execute: runs not started or interrupted, and, if
+// `retry_failed`, failed ones.
 std::vector<ExperimentRun> StillToBeDone(const StoredExperiment& experiment,
                                          const std::vector<ExperimentRun>& runs, bool retry_failed);
 
-// The script of an array of these runs, with `program` (shoal) as its tasks call it.
+// The sbatch script of an array of these runs. `program`: path of shoal in the tasks' commands.
 std::string ArrayScript(const StoredExperiment& experiment, const std::vector<ExperimentRun>& runs,
                         const ArrayTerms& terms, const std::filesystem::path& program);
 
-// Writes the script into the experiment's folder (slurm.sbatch), submits it with sbatch and notes
-// the job in slurm.json. Throws Error: tasks of the array that was submitted before are still
-// queued or running, there is no sbatch, or it refuses. Waits for Slurm a minute at most.
+// Writes the script into the experiment's folder (slurm.sbatch), submits the script with sbatch and
+// records the job in slurm.json. Waits a minute at most for Slurm. Throws Error: tasks of an
+// earlier array are still queued or running, sbatch is missing, or sbatch refuses the script.
 SlurmArray SubmitArray(const StoredExperiment& experiment, const std::vector<ExperimentRun>& runs,
                        const ArrayTerms& terms);
 

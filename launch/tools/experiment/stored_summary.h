@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A summary.json without the folders of its runs, as the copies in docs/results are.
+// A summary.json without the folders of its runs, such as the copies in docs/results.
 #pragma once
 
 #include <filesystem>
@@ -8,13 +8,14 @@
 
 namespace shoal::launch {
 
-// The object of a file, with its aggregates (success, return, final_distance, ratios) computed from
-// its own rows (`runs` of each arm) and everything else as it was. A file that does not name the
-// rule by which n_to_target was found is of a build that asked each of two evaluations:
-// n_to_target_rule says so. Throws Error naming the file where it is no shoal-experiment-1 object.
+// Reads the object of a file. The aggregates (success, return, final_distance, ratios) are computed
+// anew from the rows (`runs` of each arm); all other members are unchanged. If the file does not
+// name the rule of n_to_target, an older build wrote it, and n_to_target_rule is set to that
+// build's rule: two consecutive evaluations that both reach the target. Throws Error naming the
+// file if it is not a shoal-experiment-1 object.
 nlohmann::ordered_json ReadStoredSummary(const std::filesystem::path& file);
 
-// For people: the question, a line per arm, the ratios.
+// Text for the terminal: the question, a line per arm, the ratios.
 std::string StoredSummaryText(const nlohmann::ordered_json& summary);
 
 }  // namespace shoal::launch

@@ -21,7 +21,7 @@ struct RunOutcome {
   ExperimentRun run{};
   StandingReport report{};
   LoggedRun logged{};
-  std::optional<RunResults> results{};    // empty: not begun, or unreadable
+  std::optional<RunResults> results{};    // empty: not started, or unreadable
   std::optional<uint64_t> n_to_target{};  // env steps
 };
 
@@ -31,33 +31,33 @@ struct ArmOutcome {
   SeedFigures figures{};           // of the final evaluations of the finished runs
 };
 
-// A world with baselines of its own: a task with its threshold, model file, physics and action
-// repeat.
+// A world with its own baselines: a task with its threshold, model file, physics and action repeat.
 struct JudgedWorld {
   enum class Kind {
     kFirst,      // of the first arm
-    kOtherTask,  // the first of its task: of a further arm, or that policies are tested on
-    kOtherArm,   // of a task there is already, otherwise set up by an arm
+    kOtherTask,  // another task, of a further arm or of a test on a further task
+    kOtherArm,   // a task listed already, with other settings of an arm
   };
   Kind kind = Kind::kFirst;
-  std::string name{};  // of the task; of the arm where it is kOtherArm
+  std::string name{};  // of the task; kOtherArm: of the arm
   Config config{};
 };
 
-// One for each, the first arm's first.
+// One entry for each world, beginning with the first arm's.
 std::vector<JudgedWorld> JudgedWorlds(const StoredExperiment& experiment);
 
 struct ExperimentOutcome {
   StoredExperiment experiment{};
   std::vector<ArmOutcome> arms{};
-  // n_to_target of an arm and of the first one, seed by seed: for each arm but the first, where the
-  // task has a success.
+  // Ratio of n_to_target between an arm and the first arm, seed by seed. One entry for each arm
+  // except the first; empty if the task has no success.
   struct NamedRatio {
     std::string arm, first;
     SampleRatio ratio;
   };
   std::vector<NamedRatio> ratios{};
-  // Baselines of each world in which an arm trains or is tested; only those already measured.
+  // Baselines of each world in which an arm trains or is tested; worlds that are not measured yet
+  // are left out.
   struct NamedBaselines {
     JudgedWorld world;
     Baselines baselines;
@@ -65,8 +65,8 @@ struct ExperimentOutcome {
   std::vector<NamedBaselines> baselines{};
 };
 
-// Reads every run. Throws Error only for a broken experiment.json or log: a broken run is a failed
-// one.
+// Reads every run. A broken run counts as failed. Throws Error only for a broken experiment.json or
+// log.
 ExperimentOutcome ReadOutcome(const StoredExperiment& experiment);
 
 nlohmann::ordered_json ToJson(const ExperimentOutcome& outcome);
@@ -74,9 +74,9 @@ nlohmann::ordered_json ToJson(const ExperimentOutcome& outcome);
 // summary.json of the experiment's folder, replaced atomically. Throws Error.
 void WriteSummary(const ExperimentOutcome& outcome);
 
-// For people: what was asked, a line per arm, the ratios, what is missing.
+// Text for the terminal: the question, a line per arm, the ratios, the missing runs.
 std::string SummaryText(const ExperimentOutcome& outcome);
-// A line per run: how it stands and how far it came.
+// Text for the terminal: a line per run with its status and progress.
 std::string StatusText(const ExperimentOutcome& outcome);
 
 }  // namespace shoal::launch

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Observations on which two computations of one policy are compared.
+// Observations for comparing two implementations of one policy.
 #pragma once
 
 #include <cstdint>
@@ -20,21 +20,21 @@ struct ObservationSet {
   std::vector<float> vectors = {};   // (N, V)
 };
 
-// Images are noise, each in a brightness range of its own. Vectors are normal with mean 0 and
-// deviation 1. If the policy normalises vectors, theirs are the mean and deviation of `scale`, and
-// a tenth of the numbers is 30 times as far from the mean, so that clipping shows.
+// Images are noise, each in its own range of brightness. Vectors are normally distributed with mean
+// 0 and deviation 1. If the policy normalises vectors, they have the mean and deviation of `scale`
+// instead, and a tenth of the numbers is 30 times as far from the mean, so that clipping is tested.
 ObservationSet RandomObservations(const ObservationSpec& spec,
                                   const std::optional<nn::VectorScale>& scale, int count,
                                   uint64_t seed);
 
-// Observations of actors, from the ring of the run that contains `checkpoint`
-// (RUN/checkpoints/NAME or RUN/checkpoints/candidates/NAME). Empty if there is no such ring, or one
-// of another spec; `why` gets the reason.
+// Recorded observations from the ring of the run that contains `checkpoint` (RUN/checkpoints/NAME
+// or RUN/checkpoints/candidates/NAME). Empty, with the reason in `why`, if the run has no ring or
+// the ring has another spec.
 std::optional<ObservationSet> RecordedObservations(const std::filesystem::path& checkpoint,
                                                    const ObservationSpec& spec, int count,
                                                    uint64_t seed, std::string* why);
 
-// Columns of the policy's vector: of each observed block (N, size), by its name.
+// Columns of the policy's vector: each observed block (N, size), by its name.
 std::map<std::string, std::vector<float>> BlocksOf(const ObservationSpec& spec,
                                                    const ObservationSet& observations);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs an ONNX model by the plain operators of onnx_operators.h, node by node: slow, and simple
-// enough to be believed. Export holds the policy against it before a file leaves.
+// Runs an ONNX model node by node with the plain operators of onnx_operators.h. The evaluator is
+// slow, and simple enough to be trusted. Export compares the policy with the evaluator before a
+// file is written.
 #pragma once
 
 #include <map>
@@ -12,12 +13,13 @@ namespace shoal::launch {
 
 class OnnxEvaluator {
  public:
-  // Throws Error where a node's operator is not known, reads what there is not, or writes what
-  // there is already.
+  // Throws Error if a node has an unknown operator, reads a name that nothing defines, or writes a
+  // name that is defined already.
   explicit OnnxEvaluator(OnnxModel model);
 
-  // The output (N, ...) of inputs (N, ...) by name; u8 as floats. Throws Error naming an input that
-  // is missing or has another shape, and a node whose inputs do not fit.
+  // Computes the output (N, ...) from inputs (N, ...) by name; u8 inputs are passed as floats.
+  // Throws Error naming an input that is missing or has a wrong shape, or a node whose inputs do
+  // not match.
   OnnxTensor Run(const std::map<std::string, OnnxTensor>& inputs) const;
 
  private:

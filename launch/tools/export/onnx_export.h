@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a checkpoint's policy to the bytes of an ONNX file that has been seen to act as it does.
+// Converts a checkpoint's policy to the bytes of an ONNX file and verifies that the file computes
+// the same actions.
 #pragma once
 
 #include <string>
@@ -9,20 +10,20 @@
 
 namespace shoal::launch {
 
-// The most by which an exported policy's actions may differ from ours in f32.
+// Largest allowed difference between the actions of an exported policy and of Shoal's, in f32.
 inline constexpr float kMostDifference = 1e-4f;
 
 struct OnnxExport {
   std::string bytes;
-  std::vector<Agreement> agreements;  // of each set of observations
+  std::vector<Agreement> agreements;  // one for each set of observations
 };
 
-// Writes the model, reads it back, and evaluates it by plain operators on each set. Throws Error
-// saying by how much, where an action differs by more than kMostDifference.
+// Writes the model, reads it back, and evaluates it with plain operators on each set. Throws Error
+// stating the difference if an action differs by more than kMostDifference.
 OnnxExport ExportOnnx(const policy::CheckpointPolicy& policy,
                       const std::vector<ObservationSet>& sets);
 
-// Throws Error where they do not agree.
+// Throws Error if the two lists of actions differ by more than kMostDifference.
 void CheckAgreement(const Agreement& agreement);
 
 }  // namespace shoal::launch

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An ONNX file as a value: the part of the format that a policy needs, and its bytes.
+// An ONNX file as a value: the subset of the format that a policy needs, and its encoding.
 //
 // Constants are f32. Inputs and the output have the batch as their first dimension, N, which
 // the program that runs the file chooses. Each node follows the nodes whose outputs it reads.
@@ -18,9 +18,9 @@
 namespace shoal::launch {
 
 inline constexpr int kOnnxOperatorSet = 17;
-inline constexpr int kOnnxIrVersion = 8;  // what came with that operator set
+inline constexpr int kOnnxIrVersion = 8;  // IR version of that operator set
 
-// Row-major. No shape: one number.
+// Row-major. An empty shape: a single number.
 struct OnnxTensor {
   std::vector<int64_t> shape = {};
   std::vector<float> values = {};
@@ -28,14 +28,14 @@ struct OnnxTensor {
   bool operator==(const OnnxTensor&) const = default;
 };
 
-// Numbers of a tensor of this shape.
+// Count of the numbers in a tensor of this shape.
 size_t Count(const std::vector<int64_t>& shape);
 
 using OnnxAttribute = std::variant<int64_t, float, std::vector<int64_t>>;
 
 struct OnnxNode {
   std::string op;                   // "Conv"
-  std::vector<std::string> inputs;  // of constants, of the model's inputs, of earlier outputs
+  std::vector<std::string> inputs;  // names of constants, model inputs or earlier outputs
   std::string output;
   std::map<std::string, OnnxAttribute> attributes = {};
 
@@ -62,12 +62,12 @@ struct OnnxModel {
   bool operator==(const OnnxModel&) const = default;
 };
 
-// The bytes of a file. The same model gives the same bytes. Throws Error where it is too large for
-// the format (2 GB).
+// Encodes the model as the bytes of a file. The same model gives the same bytes. Throws Error if
+// the model is too large for the format (2 GB).
 std::string WriteOnnx(const OnnxModel& model);
 
-// Reads what WriteOnnx writes. `source` names the bytes in errors. Throws Error on anything else,
-// other operator sets and tensors of other types included.
+// Decodes bytes that WriteOnnx wrote. `source` names the bytes in errors. Throws Error on anything
+// else, including other operator sets and tensors of other types.
 OnnxModel ReadOnnx(std::string_view bytes, const std::string& source);
 
 }  // namespace shoal::launch

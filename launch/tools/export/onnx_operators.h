@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The operators of ONNX that an exported policy uses, as plain loops: what the file means, computed
-// by none of the code that the policy is computed by.
+// The ONNX operators of exported policies, as plain loops. They share no code with the policy's
+// networks, so that they check the meaning of a file independently.
 //
-// Sums are in double. Of attributes only the cases that PolicyToOnnx writes are there.
+// Sums are in double. Attributes are supported only with the values that PolicyToOnnx writes.
 #pragma once
 
 #include <span>
@@ -13,10 +13,10 @@
 namespace shoal::launch {
 
 using OnnxArguments = std::span<const OnnxTensor* const>;
-// Throws Error naming the node where inputs or attributes are not what the operator takes.
+// Throws Error naming the node if its inputs or attributes do not match the operator.
 using OnnxOperator = OnnxTensor (*)(const OnnxNode& node, OnnxArguments inputs);
 
-// Null: none of that name.
+// Null if there is no operator of this name.
 OnnxOperator FindOnnxOperator(std::string_view name);
 
 }  // namespace shoal::launch

@@ -7,8 +7,8 @@
 //   action            f32 (N, A)           in [-1, 1]
 //
 // The model pools and scales pixels, and normalises vectors if the policy was trained on normalised
-// ones. Batch normalisation uses running statistics. Random shifts belong to training, and a
-// Gaussian's deviation to exploration: the model has neither.
+// vectors. Batch normalisation uses running statistics. The model has no random shifts, which
+// belong to training, and no Gaussian deviation, which belongs to exploration.
 #pragma once
 
 #include "common/policy/checkpoint_policy.h"
@@ -19,7 +19,7 @@ namespace shoal::launch {
 inline constexpr char kPixelsInput[] = "pixels", kActionOutput[] = "action";
 
 // Throws Error naming a tensor that is missing or of a wrong type or shape, or a block whose name
-// is taken.
+// is used already.
 OnnxModel PolicyToOnnx(const policy::CheckpointPolicy& policy);
 
 }  // namespace shoal::launch

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The actions of one policy, (N, A) in [-1, 1], computed by Shoal and by what was exported.
+// Actions of one policy, (N, A) in [-1, 1], computed by Shoal and by the exported file.
 #pragma once
 
 #include <vector>
@@ -10,20 +10,21 @@
 
 namespace shoal::launch {
 
-// By our own networks in f32, without exploration. Throws Error where a tensor does not fit or an
-// action is not finite.
+// Actions of Shoal's own networks in f32, without exploration. Throws Error if a tensor does not
+// match or an action is not finite.
 std::vector<float> OwnActions(const policy::CheckpointPolicy& policy,
                               const ObservationSet& observations);
 
-// By the plain evaluator (onnx_evaluator.h). Throws Error where the model cannot run.
+// Actions of the exported model, by the plain evaluator (onnx_evaluator.h). Throws Error if the
+// model cannot run.
 std::vector<float> OnnxActions(const OnnxModel& model, const ObservationSpec& spec,
                                const ObservationSet& observations);
 
 // Result of a comparison of two lists of actions.
 struct Agreement {
   int observations = 0;
-  float largest_difference = 0;  // infinite where an action is not a number
-  float least = 0, most = 0;     // of the first list's actions
+  float largest_difference = 0;  // infinite if an action is not a number
+  float least = 0, most = 0;     // smallest and largest action of the first list
 };
 Agreement Compare(const std::vector<float>& ours, const std::vector<float>& theirs,
                   int observations);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Observations and the actions that our own networks answer them with, for other runtimes to be
-// held to.
+// Observations with the actions of Shoal's own networks, as a reference for other runtimes.
 #pragma once
 
 #include <string>
@@ -11,8 +10,8 @@
 
 namespace shoal::launch {
 
-// The bytes of a safetensors file: `pixels` U8 (N, K*C, H, W) where there are pixels, each observed
-// block F32 (N, size) by its name, and `action` F32 (N, A), of all sets one after another.
+// The bytes of a safetensors file: `pixels` U8 (N, K*C, H, W) if there are pixels, each observed
+// block F32 (N, size) by its name, and `action` F32 (N, A); all sets one after another.
 std::string WriteSamples(const policy::CheckpointPolicy& policy,
                          const std::vector<ObservationSet>& sets);
 

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// A policy as Stable-Baselines3 keeps one: a zip archive whose policy.pth holds the state_dict of
-// the algorithm's MlpPolicy or CnnPolicy, for MODEL.set_parameters(FILE, exact_match=False).
+// A policy in the format of Stable-Baselines3: a zip archive whose policy.pth holds the state_dict
+// of the algorithm's MlpPolicy or CnnPolicy, for MODEL.set_parameters(FILE, exact_match=False).
 //
-//                           of a squashed Gaussian    deterministic             unsquashed
-//   ours                    (SAC)                     (TD3, DDPG)               (PPO)
-//   encoder.conv{i}         X.cnn.{2i}                X.cnn.{2i}                X.cnn.{2i}
-//   actor.trunk             X.linear.0                X.linear.0                X.linear.0
-//   actor.mlp.layer{i}      actor.latent_pi.{2i}      actor.mu.{2i} mlp_extractor.policy_net.{2i}
-//   actor.mlp.output        actor.mu, actor.log_std   actor.mu.{2 layers}       action_net
-//   actor.log_std                                                               log_std
+//                       squashed Gaussian        deterministic        unsquashed Gaussian
+//   Shoal               (SAC)                    (TD3, DDPG)          (PPO)
+//   encoder.conv{i}     X.cnn.{2i}               X.cnn.{2i}           X.cnn.{2i}
+//   actor.trunk         X.linear.0               X.linear.0           X.linear.0
+//   actor.mlp.layer{i}  actor.latent_pi.{2i}     actor.mu.{2i}        mlp_extractor.policy_net.{2i}
+//   actor.mlp.output    actor.mu, actor.log_std  actor.mu.{2 layers}  action_net
+//   actor.log_std                                                     log_std
 //
-// X: actor.features_extractor; of PPO features_extractor and pi_features_extractor, which are one
-// there. Critics stay what they are in the model. Where the policy normalises observations, the
+// X: actor.features_extractor; for PPO features_extractor and pi_features_extractor, which are the
+// same module. Critics of the model are not changed. If the policy normalises observations, the
 // archive's pytorch_variables.pth has their mean and variance, for a VecNormalize around the
-// environment: set_parameters leaves that alone.
+// environment; set_parameters ignores this file.
 //
 // Source: Stable-Baselines3 2.9, common/policies.py, common/torch_layers.py (NatureCNN),
 // common/save_util.py, sac/policies.py, td3/policies.py.
@@ -34,8 +34,8 @@ struct Sb3File {
   std::vector<std::string> notes;
 };
 
-// Throws Error (usage) naming what of the algorithm or its network has no counterpart there, or
-// Error naming a tensor that does not fit.
+// Throws Error (usage) naming the part of the algorithm or network that has no counterpart in
+// Stable-Baselines3, or Error naming a tensor that does not match.
 Sb3File WriteSb3(const policy::CheckpointPolicy& policy);
 
 }  // namespace shoal::launch

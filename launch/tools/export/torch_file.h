@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files that torch.load reads: an ordered dictionary of f32 tensors by name, as torch.save writes a
-// state_dict.
+// state_dict. The file is a zip archive of
 //
-//   archive/data.pkl   the dictionary, pickled: of each tensor its storage's number, shape, strides
+//   archive/data.pkl   pickled dictionary: storage number, shape and strides of each tensor
 //   archive/version    "3"
 //   archive/byteorder  "little"
 //   archive/data/I     storage I: the tensor's numbers, row-major
 //
-// in a zip archive. The pickle is of protocol 2 and names what torch's own ones do, so that
-// torch.load(weights_only=True) takes it.
+// The pickle has protocol 2 and uses only the names that torch itself uses, so that
+// torch.load(weights_only=True) accepts the file.
 //
 // Source: pytorch/pytorch, torch/serialization.py, torch/_utils.py (_rebuild_tensor_v2); opcodes:
 // python/cpython, Lib/pickletools.py.
@@ -20,7 +20,7 @@
 
 namespace shoal::launch {
 
-// CHECKs that all are F32.
+// CHECK: all tensors are F32.
 std::string WriteTorchFile(const nn::TensorMap& tensors);
 
 }  // namespace shoal::launch

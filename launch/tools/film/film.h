@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `shoal film`: episodes that a run's checkpoints play, as an MP4 file.
+// `shoal film`: makes an MP4 file of episodes that a run's checkpoints play.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +17,9 @@ struct FilmOrder {
   std::filesystem::path run;
   std::vector<std::filesystem::path> checkpoints;  // shown one after the other
   int episodes = 0;                                // of each checkpoint
-  int64_t seed = 0;  // of the episodes: those of a final evaluation with this seed
+  int64_t seed = 0;  // the episodes are those of a final evaluation with this seed
   std::filesystem::path output;
-  std::string quality = {};  // of the larger view: fast | native | reference; empty = by the run's
+  std::string quality = {};  // of the larger view: fast | native | reference; empty = the run's
   bool strips = false;       // makes a strip of each checkpoint's first episode as well
 };
 
@@ -43,8 +43,8 @@ std::filesystem::path FilmPath(const std::filesystem::path& run, const std::stri
 void CheckFilmOutput(const std::filesystem::path& run, const std::filesystem::path& output);
 
 // Plays the episodes with `shoal-actor --evaluate --frames` and encodes the frames as they arrive.
-// `say` receives a line per checkpoint. Returns nothing if `stop` ended it; throws Error. The file
-// exists as a whole or not at all.
+// `say` receives a line per checkpoint. Empty if `stop` ended the film. Throws Error. The file is
+// complete or does not exist.
 std::optional<FilmMade> MakeFilm(const FilmOrder& order, const std::function<bool()>& stop,
                                  const std::function<void(const std::string&)>& say);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which checkpoints of a run a film shows.
+// Choice of the checkpoints of a run for a film.
 #pragma once
 
 #include <filesystem>
@@ -7,9 +7,9 @@
 
 namespace shoal::launch {
 
-// At most four in the order in which they were trained: the first, two between, and the best, else
-// the newest. Throws Error where the run has none yet, and for files of the best that cannot be
-// read.
+// At most four checkpoints, in the order of training: the first, two between, and the best (if
+// there is none, the newest). Throws Error if the run has no checkpoint yet, or if the files of the
+// best one cannot be read.
 std::vector<std::filesystem::path> CheckpointsAcross(const std::filesystem::path& run);
 
 }  // namespace shoal::launch

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Some pictures of an episode side by side, for places that show images but no films.
+// Some pictures of an episode side by side, for places that show images but no videos.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace shoal::launch {
 
-// A borrowed picture: rows of 4 bytes per pixel (B G R and one without meaning),
-// `stride` bytes from a row to the next.
+// A borrowed picture: rows of 4 bytes per pixel (B, G, R and an unused byte), `stride` bytes from
+// one row to the next.
 struct PictureView {
   int width = 0, height = 0, stride = 0;
   std::span<const uint8_t> pixels;
@@ -28,10 +28,10 @@ class FilmStrip {
   static constexpr size_t kPictures = 6;
   static constexpr int kShrink = 2;  // the strip has every second row and column
 
-  // All pictures of one strip have one size.
+  // All pictures of one strip must have the same size.
   void Add(const PictureView& picture);
-  // At most kPictures of those added, the first and the last among them, from left to right. At
-  // least one picture must have been added.
+  // At most kPictures of the added pictures from left to right, including the first and the last.
+  // At least one picture must have been added.
   StripImage Image() const;
 
  private:

@@ -21,20 +21,20 @@ struct Box {
 
 // Height and width of the larger view.
 inline constexpr int kFilmView = 560;
-// Above a picture, for its caption.
+// Height of the caption above a picture.
 inline constexpr int kCaptionHeight = 24;
 
 struct FilmLayout {
   int width = 0, height = 0;  // of the film, even: H.264 halves the resolution of its colours
   Box title, status;
-  // The policy's pictures, enlarged: its cameras in the order of the spec, then their goals.
+  // The policy's pictures, scaled: its cameras in the order of the spec, then their goals.
   std::vector<Box> cameras;
   Box view;
 };
 
-// `cameras` pictures of `height` x `width` each; none for a policy without pixels. All are enlarged
-// by the same whole number, the largest for which they fit beside the view, or, where they are too
-// large for that, made smaller by one.
+// Layout for `cameras` pictures of `height` x `width` each; 0 for a policy without pixels. All
+// pictures are enlarged by one whole number, the largest with which they fit beside the view. If
+// they are too large to fit, all are reduced by one whole number.
 FilmLayout MakeFilmLayout(int cameras, int height, int width);
 
 }  // namespace shoal::launch

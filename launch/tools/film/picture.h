@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws one picture of a film: the policy's input, the larger view, and what they are in words.
+// Draws one picture of a film: the policy's input, the larger view, and texts that describe them.
 #pragma once
 
 #include <cstdint>
@@ -15,37 +15,37 @@
 namespace shoal::launch {
 
 struct FilmText {
-  std::string title, subtitle;    // whose film; which policy
+  std::string title, subtitle;    // names of the run and of the policy
   uint32_t episode = 0;           // from 1
-  uint32_t episodes = 0;          // that are shown
+  uint32_t episodes = 0;          // number of episodes shown
   uint32_t step = 0;              // 0 = reset
   std::optional<float> reward{};  // of the step; a reset has none
   double episode_return = 0;      // so far
   bool success = false;
 };
 
-// Owns the picture, which the next Draw replaces. One thread.
+// Owns the picture; the next Draw overwrites it. One thread.
 class FilmPicture {
  public:
-  // Throws Error where there is no font.
+  // Throws Error if there is no font.
   explicit FilmPicture(const ObservationSpec& spec);
   ~FilmPicture();
 
   const FilmLayout& layout() const { return layout_; }
 
-  // `input` (I, H, W) u8 as the policy gets it, of which the newest of the K frames and the goal
-  // picture, if there is one, are shown, empty without pixels; `view` (kFilmView, kFilmView, 3) u8.
-  // CHECK on other sizes.
+  // `input`: (I, H, W) u8, the policy's input; empty without pixels. Draw shows the newest of the K
+  // frames and the goal picture, if there is one. `view`: (kFilmView, kFilmView, 3) u8. CHECK on
+  // other sizes.
   void Draw(const FilmText& text, std::span<const uint8_t> input, std::span<const uint8_t> view);
 
-  // Rows of 4 bytes per pixel, B G R and one without meaning.
+  // Rows of 4 bytes per pixel: B, G, R and an unused byte.
   std::span<const uint8_t> pixels() const;
   int stride() const;  // bytes from a row to the next
 
  private:
   struct Canvas;  // cairo's surface
 
-  // A value of the three colours at (row, column) of a box, row and column from 0.
+  // Fills a box with the colours that colour_at(row, column) returns; row and column from 0.
   template <class ColourAt>
   void Fill(const Box& box, const ColourAt& colour_at);
   // Draws one camera's picture of `frame` (C, H, W).

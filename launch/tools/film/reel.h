@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes a film of streams of frames, one after the other.
+// Makes a film from streams of frames, one after the other.
 #pragma once
 
 #include <filesystem>
@@ -14,17 +14,18 @@
 
 namespace shoal::launch {
 
-// The film's rate is that of the env steps in the world, so that it plays as fast as the robot
-// moves; of tasks with more than 50 a second it shows every second, third, ... step and the last.
-// An episode's last picture stays for half a second. One thread at a time.
+// The frame rate of the film is the rate of env steps in simulated time, so that the robot moves at
+// its real speed. For tasks with more than 50 env steps a second, the film shows every second,
+// third, ... step and the last. The last picture of an episode stays for half a second. One thread
+// at a time.
 class FilmReel {
  public:
-  // `spec`: what the policy of every stream observes.
+  // `spec`: observation spec of the policies of all streams.
   FilmReel(const ObservationSpec& spec, const std::filesystem::path& output);
 
-  // Adds a stream of `episodes` whole episodes, read to its end from a file or pipe. Throws Error
-  // where it is broken, ends early, or is of other sizes than those of the spec and of kFilmView.
-  // The pictures of its first episode also go into `strip`, unless that is null.
+  // Adds a stream of `episodes` whole episodes, read to its end from a file or pipe. The pictures
+  // of the first episode also go to `strip`, unless it is null. Throws Error if the stream is
+  // broken, ends early, or has sizes other than those of the spec and of kFilmView.
   void Add(const std::filesystem::path& stream, const std::string& subtitle, uint32_t episodes,
            FilmStrip* strip = nullptr);
   // Completes the file, after at least one stream.
@@ -43,7 +44,7 @@ class FilmReel {
   FilmText text_;
   uint32_t stride_ = 1;  // env steps from one picture to the next
   uint32_t picture_microseconds_ = 0;
-  std::optional<Mp4Writer> file_;  // since the first stream, which says the rate
+  std::optional<Mp4Writer> file_;  // set by the first stream, whose header has the rate
 };
 
 }  // namespace shoal::launch

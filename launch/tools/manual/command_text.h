@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A command line as plain text: what --help says, as values that man pages and completions are
-// written from.
+// A command line as plain text: the content of --help as values, from which man pages and
+// completions are written.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ class App;
 
 namespace shoal::launch {
 
-// A word that may be typed, and what it means; the meaning may be empty.
+// A word that can be typed, with its meaning, which may be empty.
 struct Word {
   std::string word, meaning;
 };
@@ -21,10 +21,10 @@ struct Word {
 struct OptionText {
   std::string name;                // "-h,--help"; of an argument without a flag "task"
   std::vector<std::string> flags;  // "-h", "--help"; empty for an argument without a flag
-  std::string takes;               // as --help has it: "TEXT REQUIRED", "INT=480"; may be empty
+  std::string takes;               // as in --help: "TEXT REQUIRED", "INT=480"; may be empty
   std::string meaning;
   bool takes_value = false;
-  std::vector<Word> values;  // those that are known; empty = any text, number or file
+  std::vector<Word> values;  // possible values; empty = any text, number or file
 };
 
 struct CommandText {
@@ -35,10 +35,10 @@ struct CommandText {
   std::vector<CommandText> commands;
 };
 
-// The whole tree below a program's or a command's App. `name`: "shoal".
+// Describes the App of a program or command and all commands below it. `name`: "shoal".
 CommandText DescribeCommand(const CLI::App& app, const std::string& name);
 
-// The command and all below it, in the order of --help. Borrows.
+// The command and all commands below it, in the order of --help. The result borrows from `command`.
 std::vector<const CommandText*> AllCommands(const CommandText& command);
 
 }  // namespace shoal::launch

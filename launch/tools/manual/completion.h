@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Completion of command lines in three shells. Each script has one table: what may stand where,
-// with its meaning; and a few lines of the shell that look into it.
+// Completion of command lines in three shells. Each script has a table of the possible words at
+// each place, with their meanings, and a few lines of shell code that search this table.
 #pragma once
 
 #include <string>

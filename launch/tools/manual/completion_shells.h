@@ -4,7 +4,7 @@
 
 namespace shoal::launch {
 
-// bash: '=' is a word of its own on the command line.
+// bash splits the command line at '=', so that '=' is a word of its own.
 inline constexpr char kBashCompletion[] =
     R"(# bash completion of Shoal's programs, made from their command lines
 

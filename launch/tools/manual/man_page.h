@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Manual pages in man(7)'s language, from what --help and the configuration's table say.
+// Manual pages in the format of man(7), from the texts of --help and the configuration's key table.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 namespace shoal::launch {
 
 // A page of section 1: the program, its commands one after another, exit codes.
-// Ends with `see_also`, pages as "shoal(1)", separated by commas; empty = no such section.
+// `see_also`: last section, pages such as "shoal(1)" separated by commas; empty = no such section.
 std::string ProgramPage(const CommandText& program, const std::string& see_also);
 
 // shoal-configuration(5): every key.

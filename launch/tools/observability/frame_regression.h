@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well a network of a run's kind tells numbers from frames: an encoder, a trunk and linear
-// functions of it, as sac.aux trains them, by Adam on the mean square; each frame shifted anew.
+// Measures how well a network of the run's kind predicts numbers from frames: an encoder, a trunk
+// and linear functions of its output, as sac.aux trains them. Trained by Adam on the mean squared
+// error; each frame gets a new random shift.
 #pragma once
 
 #include <functional>
@@ -12,15 +13,16 @@
 namespace shoal::launch {
 
 struct RegressionErrors {
-  // Over frames of episodes that were held out, for each label, in its own unit: root mean square
-  // of what the network is off by, and of what the mean of the trained ones is.
+  // One value per label, in its unit: root mean squared error over the frames of held-out episodes.
+  // `error`: of the network; `of_mean`: of predicting the mean over the training frames.
   std::vector<double> error, of_mean;
   int trained = 0, held_out = 0;  // frames
 };
 
-// `updates` of config.learner.batch frames; network, precision, shift, seed and learning rate are
-// the configuration's. The last fifth of the episodes is held out. `stop`: asked after each update;
-// true ends the training. Throws Error where fewer than two episodes are there.
+// Trains for `updates` batches of config.learner.batch frames. Network, precision, shift, seed and
+// learning rate are the configuration's. The last fifth of the episodes is held out. `stop` is
+// called after each update; true ends the training. Throws Error if there are fewer than two
+// episodes.
 RegressionErrors RegressOnFrames(const Config& config, const LabelledFrames& frames, int updates,
                                  const std::function<bool()>& stop);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames of a task from random play, labelled with the numbers that a network shall predict.
+// Frames of a task from random play, labelled with the numbers that a network is trained to
+// predict.
 //
 // Dimensions: S samples, L labels, C channels of a frame (all cameras), H, W.
 #pragma once
@@ -14,7 +15,7 @@
 namespace shoal::launch {
 
 struct LabelledFrames {
-  ObservationSpec spec;            // without vectors: the frames alone are observed
+  ObservationSpec spec;            // without vectors: only frames are observed
   int labels = 0;                  // L
   std::vector<uint8_t> frames;     // (S, C, H, W)
   std::vector<float> values;       // (S, L)
@@ -25,9 +26,9 @@ struct LabelledFrames {
   }
 };
 
-// `samples` frames of config.task through config.observation's cameras, at the start of episodes
-// and during their first steps of uniform random actions; the labels are those of sac.aux, each
-// as PrivilegedBlocksOf reads it. Throws Error: unknown task, camera or block.
+// Collects `samples` frames of config.task through config.observation's cameras, at the start of
+// episodes and during their first steps of uniform random actions. The labels are those of sac.aux,
+// each read by PrivilegedBlocksOf. Throws Error: unknown task, camera or block.
 LabelledFrames CollectLabelledFrames(const Config& config, int samples);
 
 }  // namespace shoal::launch

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `shoal env observability`: how well sets of cameras show a quantity of a task. Choose cameras by
-// this measure rather than by the look of a picture.
+// `shoal env observability`: measures how well sets of cameras show a quantity of a task, as a
+// basis for the choice of cameras.
 #pragma once
 
 #include <functional>
@@ -14,10 +14,10 @@ namespace shoal::launch {
 
 struct ObservabilityRequest {
   std::string task;
-  // Sets of cameras that are compared; empty: each of the task's cameras alone and each pair.
+  // Sets of cameras to compare; empty: each camera of the task alone, and each pair.
   std::vector<std::vector<std::string>> cameras;
   std::vector<std::string> labels;  // as sac.aux
-  bool goal_hidden = false;         // the goal's marker, as where goals are relabelled
+  bool goal_hidden = false;         // hides the marker of the goal, as in runs that relabel goals
   int width = 84, height = 84;
   std::string quality = "fast", encoder = "compact";
   int samples = 6000;
@@ -27,19 +27,19 @@ struct ObservabilityRequest {
 
 struct ObservabilityRow {
   std::vector<std::string> cameras;
-  // By label: root mean square distance in the label's unit over its numbers together; and that of
-  // saying always the mean.
+  // One value per label, in its unit: root mean squared distance over the label's numbers together.
+  // `error`: of the network; `of_mean`: of always predicting the mean.
   std::vector<double> error, of_mean;
 };
 
 struct Observability {
   ObservabilityRequest request;
   int trained = 0, held_out = 0;       // frames
-  std::vector<ObservabilityRow> rows;  // in the order asked for
+  std::vector<ObservabilityRow> rows;  // in the order of the request
 };
 
-// `on_row`: told of each row when it is done. `stop`: asked often; true ends, with the rows that
-// are done. Throws Error (kUsage) on an unknown task, camera or block.
+// `on_row` is called when a row is finished. `stop` is called often; true ends the measurement with
+// the rows finished so far. Throws Error (kUsage) on an unknown task, camera or block.
 Observability MeasureObservability(const ObservabilityRequest& request,
                                    const std::function<void(const ObservabilityRow&)>& on_row,
                                    const std::function<bool()>& stop);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ends the process when a call of the user's code does not return: it may wait for ever, in Python
-// or in C, with or without Python's lock.
+// Ends the process if a call of the user's code does not return. The call may block forever in
+// Python or in C, with or without Python's global lock (GIL).
 #pragma once
 
 #include <atomic>
@@ -11,18 +11,18 @@
 
 namespace shoal::python {
 
-// Owns a thread. Calls are of one thread, one at a time.
+// Owns a thread. Calls are made by one thread, one at a time.
 class CallWatch {
  public:
-  // `environment` names it in the line that is left. A call that takes longer than `limit` gets
-  // SIGUSR2, on which shoal_rl.actor has faulthandler write the Python stack; then a line is
-  // written and the process ends with exit code 1.
+  // `environment`: name of the environment in the error line. If a call takes longer than `limit`,
+  // the caller gets SIGUSR2, on which faulthandler writes the Python stack (set up by
+  // shoal_rl.actor). Then the watch writes the line and ends the process with exit code 1.
   CallWatch(std::string environment, std::chrono::duration<double> limit);
   ~CallWatch();
   CallWatch(const CallWatch&) = delete;
   CallWatch& operator=(const CallWatch&) = delete;
 
-  // A call of this name is under way while it lives; `name` is a literal.
+  // Marks a call as active while the object lives. `name`: a string literal.
   class Call {
    public:
     Call(CallWatch& watch, const char* name) : watch_(watch) { watch_.Begin(name); }
@@ -46,7 +46,7 @@ class CallWatch {
   std::atomic<int64_t> began_ns_{0};  // steady clock; 0 = no call
   std::atomic<const char*> name_{nullptr};
   std::atomic<bool> leave_{false};
-  std::thread thread_;  // last: it uses the others
+  std::thread thread_;  // last: uses the other members
 };
 
 }  // namespace shoal::python

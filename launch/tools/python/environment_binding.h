@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The compiled half of shoal_rl.make: one environment of a task that writes into NumPy arrays.
-// shoal_rl/environment.py makes a Gymnasium environment of it.
+// The compiled part of shoal_rl.make: one environment of a task that writes into NumPy arrays.
+// shoal_rl/environment.py wraps it as a Gymnasium environment.
 #pragma once
 
 #include <pybind11/pybind11.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The base class of shoal_rl.Mapping: between an environment of Python and the policy that was
+// The base class of shoal_rl.Mapping, which connects a Python environment with the policy that was
 // trained on it.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Properties of the observation that policies and environments have in Python.
+// Properties of the observation that policies and environments expose in Python.
 #pragma once
 
 #include <pybind11/pybind11.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// An environment of Gymnasium's interface, called from C++: takes the place of a physics engine
-// behind actor/hosted/hosted_environment.h.
+// An environment with Gymnasium's interface, called from C++. It takes the place of a physics
+// engine behind actor/hosted/hosted_environment.h.
 //
-// Threads: made and called on one thread, which does not hold Python's lock between the calls; each
-// call takes it.
+// Threads: constructed and called on one thread. The thread does not hold Python's global lock
+// (GIL) between calls; each call acquires the GIL.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -22,33 +22,35 @@
 
 namespace shoal::python {
 
-// The maker of environments: shoal_rl.hosting.open_environment, and its exception of one line.
+// Python function that makes environments, shoal_rl.hosting.open_environment, and the exception
+// that it raises with a one-line message.
 struct EnvironmentOpener {
   pybind11::object open, refused;
 };
 
-// An environment that was opened: shoal_rl.hosting.Opened.
+// An opened environment: shoal_rl.hosting.Opened.
 struct OpenedEnvironment {
   pybind11::object opened;
-  tasks::EnvironmentDescription description;  // without what playing shows
+  tasks::EnvironmentDescription description;  // without the facts that only steps reveal
 };
 
-// Opens config.env. Holds Python's lock. Throws Error (kUsage): no such environment, or one that
-// Shoal cannot train; an exception of the environment's own, whose traceback goes to stderr.
+// The environment to open: members of config.env.
 struct EnvironmentOrder {
   std::string id, kwargs, folder, task;
-  bool picture = false;  // it will be asked for pictures (render_mode="rgb_array")
+  bool picture = false;  // pictures will be rendered (render_mode="rgb_array")
 };
+// Opens the environment. The caller holds the GIL. Throws Error (kUsage): the environment does not
+// exist, Shoal cannot train it, or it raised an exception, whose traceback is written to stderr.
 OpenedEnvironment Open(const EnvironmentOpener& opener, const EnvironmentOrder& order);
 
-// Notes in the description whether Shoal can compute the environment's rewards for other goals
-// (shoal_rl.goals). Holds Python's lock. Throws Error as Open does.
+// Records in the description whether Shoal can compute the environment's rewards for other goals
+// (shoal_rl.goals). The caller holds the GIL. Throws Error as Open does.
 void FindGoal(const EnvironmentOpener& opener, OpenedEnvironment* opened);
 
 class __attribute__((visibility("hidden"))) PythonEnvironment final
     : public hosted::RawEnvironment {
  public:
-  // Holds Python's lock. Borrows the watch.
+  // The caller holds the GIL. Borrows the watch.
   PythonEnvironment(OpenedEnvironment opened, CallWatch& watch);
   ~PythonEnvironment() override;
 
@@ -65,7 +67,7 @@ class __attribute__((visibility("hidden"))) PythonEnvironment final
   };
 
   pybind11::array ActionOf(std::span<const double> action);
-  // Keeps the arrays of an observation alive and notes where they lie.
+  // Keeps the arrays of an observation alive and stores their addresses.
   void Take(const char* call, const pybind11::handle& observation);
 
   const tasks::EnvironmentDescription description_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shapes of arrays as Python writes them, for messages.
+// Shapes of arrays in Python's notation, for messages.
 #pragma once
 
 #include <pybind11/pybind11.h>

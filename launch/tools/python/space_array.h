@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arrays of NumPy that stand for one array of an environment's description: checked, and brought
-// into the layout that the description says.
+// Checks a NumPy array against one array of an environment's description, and converts it to the
+// layout of the description.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -13,16 +13,17 @@
 
 namespace shoal::python {
 
-// pybind11's types are hidden by its attribute.
+// The attribute hides the class, because pybind11's types are hidden.
 class __attribute__((visibility("hidden"))) SpaceArray {
  public:
-  // Holds Python's lock, as every call does. `environment` names it in messages.
+  // The caller holds the GIL in all calls. `environment`: its name in messages.
   SpaceArray(std::string environment, tasks::ArraySpace space);
 
   const tasks::ArraySpace& space() const { return space_; }
-  // `value` itself if it fits, else a copy: contiguous in C order, of the description's element
-  // type. float32 and float64 stand for each other: many environments declare one and return the
-  // other. Throws Error (kRuntime) naming `call` on another shape or element type.
+  // `value` itself if it matches, else a copy: contiguous in C order, with the element type of the
+  // description. float32 and float64 are accepted for each other, because many environments declare
+  // one and return the other. Throws Error (kRuntime) naming `call` on another shape or element
+  // type.
   pybind11::array Take(const char* call, const pybind11::handle& value) const;
 
  private:
@@ -36,7 +37,7 @@ class __attribute__((visibility("hidden"))) SpaceArray {
 };
 
 // The argument of env.step: `action`, in the environment's units, as an array of the action space's
-// element type (float32 or float64) and of `shape`. Holds Python's lock.
+// element type (float32 or float64) and of `shape`. The caller holds the GIL.
 pybind11::array ActionArray(const tasks::ArraySpace& space,
                             const std::vector<pybind11::ssize_t>& shape,
                             std::span<const double> action);

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// `shoal card`: a run as a folder that model hubs take: README.md with their metadata,
-// results.json, config.json, policy.safetensors, replay.mp4 where the run has a film.
+// `shoal card`: exports a run as a folder for model hubs: README.md with the hub's metadata,
+// results.json, config.json, policy.safetensors, and replay.mp4 if the run has a film.
 #pragma once
 
 #include <filesystem>
 
 namespace shoal::launch {
 
-// Makes `folder` of the run's judged checkpoint and its final evaluation. Throws Error naming what
-// is missing (the final evaluation, the checkpoint) or the folder, which must not be there yet;
-// then nothing is left behind.
+// Makes `folder` from the run's judged checkpoint and its final evaluation. Throws Error naming the
+// missing part (the final evaluation, the checkpoint), or naming the folder if it exists already.
+// An error leaves no new files.
 void WriteCard(const std::filesystem::path& run, const std::filesystem::path& folder);
 
 }  // namespace shoal::launch

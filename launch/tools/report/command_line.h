@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Commands that people copy out of reports and cards.
+// Command lines to copy from reports and cards.
 #pragma once
 
 #include <filesystem>
@@ -8,11 +8,11 @@
 
 namespace shoal::launch {
 
-// A command line for a shell: quotes only words that need it.
+// A command line for a shell; only words that need quotes are quoted.
 std::string CommandLine(const std::vector<std::string>& words);
 
-// Trains a run again from its own configuration, into runs/NAME-again: `config` may say another
-// run_dir, as that of an experiment's run does.
+// Command that trains a run again from its own configuration, into runs/NAME-again. The command
+// sets run_dir, because `config` may have another one: an experiment's run does.
 std::string TrainAgain(const std::filesystem::path& config, const std::string& name);
 
 }  // namespace shoal::launch

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `shoal compare`: groups of runs side by side. Seeds are the unit (statistics.h).
+// `shoal compare`: compares groups of runs. The unit of the statistics is the seed (statistics.h).
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -18,22 +18,22 @@ struct GroupFigures {
   std::string name{};
   std::vector<int64_t> seeds{};
   std::vector<bool> over{};  // by seed: finished or failed
-  // Figures of the final evaluation of each run, or of its last one if it has not ended. A failed
-  // run is only counted, unless it is the whole group.
+  // Results of the final evaluation of each run, or of the last evaluation if the run has not
+  // ended. A failed run is only counted, unless it is the only run of the group.
   SeedFigures figures{};
   std::vector<std::string> without_final{};  // runs judged by their last evaluation
   std::vector<std::string> failed{};
   std::vector<std::string> unevaluated{};
-  // Env steps, by seed; empty = not reached, or, where the run is not over, not yet.
+  // Env steps by seed; empty = not reached, or not reached yet if the run is not over.
   std::vector<std::optional<double>> n_to_target{};
-  std::vector<std::optional<double>> seconds_to_target{};      // of wall clock, likewise
+  std::vector<std::optional<double>> seconds_to_target{};      // wall clock; empty as above
   std::vector<double> env_steps{}, updates{}, wall_seconds{};  // by seed
   double core_hours = 0;  // of all seeds: wall time x usable cores
 };
 
 struct KeyDifference {
   std::string key{};
-  std::vector<std::string> values{};  // as JSON, one per group; "-" of a group without runs
+  std::vector<std::string> values{};  // as JSON, one per group; "-" for a group without runs
 };
 
 struct Comparison {
@@ -43,27 +43,27 @@ struct Comparison {
   // Ratios of each further group to the first, over the seeds whose runs are over in both.
   std::vector<SampleRatio> ratios{};
   std::vector<KeyDifference> differences{};
-  std::optional<Baselines> baselines{};  // empty where they have not been measured
+  std::optional<Baselines> baselines{};  // empty if not measured
 };
 
-// Throws Error (usage) on mixed tasks.
+// Compares the groups. Throws Error (usage) if their tasks differ.
 Comparison Compare(const std::vector<RunGroup>& groups, double target_success);
-// The same where tasks may be mixed, as in an experiment about transfer: `task` and the baselines
-// are then those of the first group.
+// Compares groups whose tasks may differ, as in an experiment about transfer. `task` and the
+// baselines are those of the first group.
 Comparison Gather(const std::vector<RunGroup>& groups, double target_success);
 
 // Schema shoal-comparison-1; docs/experiments.md.
 nlohmann::ordered_json ToJson(const Comparison& comparison);
 std::string ToText(const Comparison& comparison);
 
-// "3", "2, 1 failed": seeds that a group's figures are of, and those that failed; "1, failed" of a
-// failed run by itself.
+// Number of seeds in a group's results, and number of failed seeds: "3", "2, 1 failed"; "1, failed"
+// for a single failed run.
 std::string FormatSeeds(const GroupFigures& group);
 // Env steps and wall clock to the target, by seed: "1200 (35 s), not reached, not yet"; "-" without
 // runs.
 std::string FormatSteps(const GroupFigures& group);
 
-// Configuration keys in which the groups differ; those that only name a run are left out.
+// Configuration keys with different values in the groups, except keys that only name a run.
 std::vector<KeyDifference> FindDifferences(const std::vector<RunGroup>& groups);
 
 }  // namespace shoal::launch

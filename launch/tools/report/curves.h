@@ -15,24 +15,24 @@ enum class PlotFigure { kSuccess, kReturn, kFinalDistance };
 struct CurvePoint {
   double x = 0;
   double mean = 0, low = 0, high = 0;  // over the seeds: mean, smallest, largest
-  size_t seeds = 0;                    // that reach to x
+  size_t seeds = 0;                    // whose curves extend to x
 };
 
-// One group's evaluations while training over `axis`. Each seed's curve is linear between its
-// evaluations and ends with them; the points are those of all seeds, thinned to at most `points`.
-// Empty if no run has the figure.
+// Curve of one group's evaluations during training, over `axis`. Each seed's curve is linear
+// between its evaluations and ends with the last one. The curve has a point at each evaluation of
+// any seed, thinned to at most `points`. Empty if no run has the figure.
 std::vector<CurvePoint> CurveOf(const RunGroup& group, PlotAxis axis, PlotFigure figure,
                                 size_t points = 200);
 
 // Reads metrics.jsonl of each run into its `rollouts`.
 void ReadRollouts(std::vector<RunGroup>* groups);
 
-// The curve of the episodes that the actors play, exploring, while a run trains: of the runs'
+// Curve of the training episodes, which the actors play with exploration, from the runs'
 // `rollouts`. Empty for the final distance, which is not recorded.
 std::vector<CurvePoint> RolloutCurveOf(const RunGroup& group, PlotAxis axis, PlotFigure figure,
                                        size_t points = 200);
 
-// Figures that any of the runs has, in the order success, return, distance.
+// Figures that at least one run has, in the order success, return, distance.
 std::vector<PlotFigure> FiguresThereAre(const std::vector<RunGroup>& groups);
 
 }  // namespace shoal::launch

@@ -11,18 +11,18 @@
 
 namespace shoal::launch {
 
-// Throw Error (usage) naming the word and those there are.
+// Both throw Error (usage) naming the unknown word and the possible words.
 PlotAxis ParsePlotAxis(const std::string& word);      // env-steps | updates | wall
 PlotFigure ParsePlotFigure(const std::string& word);  // success | return | distance
 
 struct Plot {
   std::string title{};
   PlotAxis axis = PlotAxis::kEnvSteps;
-  std::vector<PlotFigure> figures{};  // one below the other
+  std::vector<PlotFigure> figures{};  // drawn from top to bottom
 };
 
-// Commands for gnuplot with the data in them; `output` as png or svg, by its ending. Throws Error
-// (usage) where no run has a figure.
+// Script for gnuplot with the data in it. The ending of `output` selects png or svg. Throws Error
+// (usage) if no run has a figure.
 std::string PlotScript(const Plot& plot, const std::vector<RunGroup>& groups,
                        const std::filesystem::path& output);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `shoal report`: one HTML page that needs nothing but itself: what was asked, figures with
-// intervals, curves, films, configuration, machine, builds, the commands that repeat it.
+// `shoal report`: a self-contained HTML page with the question, results with intervals, curves,
+// films, configuration, machine, builds, and the commands that repeat the runs.
 #pragma once
 
 #include <string>
@@ -15,15 +15,15 @@ struct ReportContent {
   Comparison comparison{};
   std::vector<RunGroup> groups{};
   std::vector<Definition> definitions{};  // of the experiments among the subjects
-  std::vector<std::string> commands{};    // that repeat it
-  std::vector<std::string> curves{};      // SVG documents, one for each axis; none without figures
+  std::vector<std::string> commands{};    // that repeat the runs
+  std::vector<std::string> curves{};      // SVG documents, one per axis; empty without figures
 };
 
-// Reads the subjects and has their curves drawn. Throws Error: as ReadSubjects and Draw; mixed
-// tasks unless they are those of one experiment.
+// Reads the subjects and draws their curves. Throws Error as ReadSubjects and Draw do, and if tasks
+// differ, unless all belong to one experiment.
 ReportContent GatherReport(const SubjectOptions& options);
 
-// Everything from outside is escaped.
+// The HTML page. Text from outside the program is escaped.
 std::string ReportHtml(const ReportContent& content);
 
 }  // namespace shoal::launch

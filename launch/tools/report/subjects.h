@@ -12,13 +12,13 @@
 
 namespace shoal::launch {
 
-// Runs that differ in their seeds alone: an arm, or one run that was named.
+// Runs that differ only in their seeds: an arm, or one named run.
 struct RunGroup {
   std::string name{};
-  std::vector<RunResults> runs{};          // those that were evaluated, failed ones too
-  std::vector<std::string> unevaluated{};  // of an arm: runs that have not come so far, by name
-  std::vector<std::string> unfinished{};   // of `runs`: those with something still to be done
-  std::vector<std::string> failed{};       // runs that failed, of `runs` or not evaluated
+  std::vector<RunResults> runs{};          // runs with an evaluation, including failed ones
+  std::vector<std::string> unevaluated{};  // names of an arm's runs without an evaluation yet
+  std::vector<std::string> unfinished{};   // of `runs`: runs that are not finished
+  std::vector<std::string> failed{};       // failed runs, with or without an evaluation
 };
 
 struct SubjectOptions {
@@ -40,11 +40,11 @@ struct Subjects {
   std::vector<RunGroup> groups{};
 };
 
-// Throws Error (usage) naming a subject that is neither run nor experiment, is given twice or has
-// no evaluation.
+// Reads the subjects. Throws Error (usage) naming a subject that is neither a run nor an
+// experiment, occurs twice or has no evaluation.
 Subjects ReadSubjects(const SubjectOptions& options);
 
-// Throws Error (usage) naming two runs of different tasks: their figures do not compare.
+// Throws Error (usage) naming two runs of different tasks, whose results cannot be compared.
 void CheckOneTask(const std::vector<RunGroup>& groups);
 
 }  // namespace shoal::launch

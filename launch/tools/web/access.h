@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Access rights to the page. Pure, except for making a token.
+// Access rights to the page. Pure, except for MakeToken.
 //
-// Read access: on loopback every user of this host, by a name of this host (after "DNS rebinding" a
-// foreign page uses another name); at any other address every holder of the token. Write access
-// (every method except GET and HEAD): a request that has the token in a header of its own, from a
-// page of this server. A browser sends cookies by itself, so a cookie never gives write access.
+// Read access: on loopback, every user of this host whose request names this host. A foreign page
+// that uses "DNS rebinding" names another host. At any other address, every holder of the token.
+// Write access (every method except GET and HEAD): a request from a page of this server with the
+// token in a header of its own. A browser sends cookies automatically, so a cookie never gives
+// write access.
 #pragma once
 
 #include <string>
@@ -17,20 +18,20 @@ namespace shoal::launch {
 inline constexpr char kTokenHeader[] = "X-Shoal-Token";
 inline constexpr char kTokenCookie[] =
     "shoal_token";                              // followed by the port: cookies know no ports
-inline constexpr char kTokenQuery[] = "token";  // of the printed address
+inline constexpr char kTokenQuery[] = "token";  // query parameter of the printed address
 
-// 128 random bits as 32 hexadecimal digits. Throws Error where the system has none.
+// 128 random bits as 32 hexadecimal digits. Throws Error if the system provides no random bits.
 std::string MakeToken();
 
-// Whether they are equal, in a time that depends on their lengths alone.
+// Whether a and b are equal, computed in a time that depends only on their lengths.
 bool EqualInConstantTime(std::string_view a, std::string_view b);
 
-// The value of a cookie in a Cookie header; empty when there is none of that name.
+// The value of a cookie in a Cookie header; empty if there is no cookie of that name.
 std::string_view CookieValue(std::string_view header, std::string_view name);
 
-// Identification of a caller in its request. Empty members are missing there.
+// Identification of a caller in its request. An empty member is missing in the request.
 struct Caller {
-  bool acts = false;             // by another method than GET and HEAD
+  bool acts = false;             // method other than GET and HEAD
   std::string host{}, origin{};  // headers
   std::string fetch_site{};      // header Sec-Fetch-Site
   std::string header_token{};    // header kTokenHeader
@@ -39,8 +40,8 @@ struct Caller {
 
 enum class Access {
   kAllowed,
-  kNoToken,  // none, or a wrong one
-  kForeign,  // from a page of others, or under another name
+  kNoToken,  // no token, or a wrong one
+  kForeign,  // from another server's page, or by another host name
 };
 
 class Gate {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// cpp-httplib's server with a bound on everything that a client decides: the time to receive a
+// cpp-httplib's server with limits on everything that a client controls: the time to receive a
 // request and to send an answer, the length of a request, the number of connections. One request
 // per connection.
 //
-// Encoded bodies are not decoded, and answers are not compressed: in the library the client decides
+// Encoded bodies are not decoded, and answers are not compressed, because the client would control
 // the cost of both. Handlers answer ranges themselves.
 #pragma once
 
@@ -17,20 +17,20 @@
 namespace shoal::launch {
 
 struct ServerLimits {
-  std::chrono::milliseconds request{3000};  // for a request to arrive as a whole
-  std::chrono::milliseconds answer{15000};  // for its answer to be taken
-  std::chrono::milliseconds file{300000};   // for a file's, behind a slow line
+  std::chrono::milliseconds request{3000};  // to receive a whole request
+  std::chrono::milliseconds answer{15000};  // to send an answer
+  std::chrono::milliseconds file{300000};   // to send a file, over a slow line
   size_t request_bytes = 24000;             // headers and body
   size_t threads = 16;
-  size_t waiting = 16;  // connections; what comes beyond is closed at once
+  size_t waiting = 16;  // connections; further ones are closed at once
 };
 
 class BoundedServer final : public HttpServer {
  public:
-  // `is_file`: whether the answer to this path is a file, for which limits.file is the time.
+  // `is_file`: whether the answer to this path is a file, with the time limit limits.file.
   BoundedServer(const ServerLimits& limits, std::function<bool(const std::string&)> is_file);
 
-  // Ends the waits of every connection, so that Server::stop need not wait for them.
+  // Ends the waits of all connections, so that Server::stop returns soon.
   void EndConnections() { ending_ = true; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which part of a file a request is about: what films need for jumping to and fro. Pure.
+// Part of a file that a request asks for; films need such parts for seeking. Pure.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,13 @@ struct ByteRange {
 };
 
 enum class RangeAsked {
-  kWhole,  // no range, several, or none that is understood: the whole file is the answer
+  kWhole,  // no range, several, or an invalid one: the answer is the whole file
   kPart,
   kOutside,  // begins behind the file's end
 };
 
-// `header`: the Range header, "bytes=0-99", "bytes=100-", "bytes=-50". Sets *range where kPart.
+// `header`: the Range header, "bytes=0-99", "bytes=100-", "bytes=-50". Sets *range if the result is
+// kPart.
 RangeAsked ParseByteRange(std::string_view header, uint64_t file_bytes, ByteRange* range);
 
 }  // namespace shoal::launch

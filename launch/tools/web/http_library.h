@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One spelling for declarations that differ between cpp-httplib 0.11 (Debian 12) and 0.18 (Debian
-// 13).
+// Hides the differences between cpp-httplib 0.11 (Debian 12) and 0.18 (Debian 13).
 #pragma once
 
 #include <httplib.h>
@@ -10,14 +9,14 @@
 
 namespace shoal::launch {
 
-// Result of httplib::TaskQueue::enqueue: none in 0.11; in 0.18 whether the task was accepted.
+// Result of httplib::TaskQueue::enqueue: void in 0.11; in 0.18 whether the task was accepted.
 using Enqueued = decltype(std::declval<httplib::TaskQueue&>().enqueue(nullptr));
 
-// httplib::Server whose one request of a connection is answered by AnswerRequest. The later version
-// also asks for both ends' addresses, to log them; Shoal does not use them.
+// httplib::Server with AnswerRequest, which answers the one request of a connection. Version 0.18
+// also takes the addresses of both ends, for logging; Shoal does not use them.
 class HttpServer : public httplib::Server {
  protected:
-  // False when there was nothing that could be answered.
+  // False if the connection had no request that could be answered.
   template <class Connection>
   bool AnswerRequest(Connection& connection,
                      const std::function<void(httplib::Request&)>& prepare) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Connections to the running runs that a page shows. The network of a run is joined at the first
-// request for it and left some time after the last one. A run that no page shows is not touched.
+// request for the run and left some time after the last one. Runs that no page shows are not
+// joined.
 #pragma once
 
 #include <chrono>
@@ -16,24 +17,24 @@
 
 namespace shoal::launch {
 
-// Any thread. Answers about one run come one after the other.
+// Any thread. Requests about one run are answered one after the other.
 class LiveRuns {
  public:
-  static constexpr std::chrono::seconds kUnwatched{15};  // then a run is left
-  static constexpr size_t kMost = 4;                     // at once: the longest unasked goes first
+  static constexpr std::chrono::seconds kUnwatched{15};  // unused time until a run is left
+  static constexpr size_t kMost = 4;  // connections; the least recently used is dropped
 
   // `secure`: folder of credentials; empty = as each run's cluster.json says.
   explicit LiveRuns(const std::string& secure) : secure_(secure) {}
 
-  // The run's newest view. The first waits for it, 5 s at most. Throws Error: the run is not
-  // running, its coordinator does not answer or is silent.
+  // The run's newest view. The first call for a run waits up to 5 s for the view. Throws Error: the
+  // run is not running, or its coordinator does not answer or is silent.
   RunViewMessage View(const std::filesystem::path& run);
   // RunClient::Order.
   ReplyMessage Order(const std::filesystem::path& run, const std::string& verb,
                      const std::vector<std::string>& arguments);
-  // To be called every few seconds.
+  // Leaves runs that no page shows any more. Call every few seconds.
   void LeaveUnwatched(SteadyTime now);
-  // Joined now.
+  // Number of joined runs.
   size_t size() const;
 
  private:
@@ -46,7 +47,7 @@ class LiveRuns {
   };
 
   std::shared_ptr<Line> LineTo(const std::filesystem::path& run);
-  // The client of a line, joining where there is none yet.
+  // The client of a line; joins the run's network if there is no client yet.
   RunClient& Client(const std::filesystem::path& run, Line& line) SHOAL_REQUIRES(line.mutex);
 
   const std::string secure_;

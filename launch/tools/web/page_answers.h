@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Answers to the page's scripts, as JSON. Pure. Text from the network and from files that is not
-// UTF-8 is replaced.
+// Answers to the page's scripts, as JSON. Pure. Invalid UTF-8 in texts from the network and from
+// files is replaced.
 #pragma once
 
 #include <string>
@@ -19,10 +19,10 @@ std::string ErrorAnswer(std::string_view message);
 
 // {"view": as `shoal top --once --json`, "line", "advice", "columns", "rows": as `shoal top
 // --once`,
-//  "progress": figures of its first line, null where unknown, "events": [[time, text], ...]}
+//  "progress": figures of its first line, null if unknown, "events": [[time, text], ...]}
 std::string TopAnswer(const RunViewMessage& view);
 
-// {"runs": as `shoal runs --json`, "keys": those that `set` takes}
+// {"runs": as `shoal runs --json`, "keys": keys that `set` accepts}
 std::string RunsAnswer(const std::filesystem::path& dir, const std::vector<RunListing>& runs);
 
 // {"checkpoint": newest or "", "files": [{path, bytes, modified}], "episode": {state, ...}}
@@ -34,8 +34,8 @@ struct PageOrder {
   std::vector<std::string> arguments;
 };
 
-// {"verb": "set" | "scale" | "stop", "arguments": [text, ...]}. Throws Error (usage) on anything
-// else. What the arguments mean is for the run to judge.
+// Parses {"verb": "set" | "scale" | "stop", "arguments": [text, ...]}. Throws Error (usage) on
+// anything else. The run checks the arguments.
 PageOrder ParsePageOrder(const std::string& body);
 
 }  // namespace shoal::launch

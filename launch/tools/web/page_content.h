@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the answers to the page's requests: the runs there are, their curves, lines to those that
-// run, episodes that are played.
+// Computes the answers to the page's requests: list of runs, curves, connections to running runs,
+// played episodes.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +18,7 @@
 namespace shoal::launch {
 
 struct PageContentOptions {
-  std::filesystem::path run{};  // folder of the only run that is shown; empty = all of run_dir
+  std::filesystem::path run{};  // folder of the only run shown; empty = all runs of run_dir
   std::filesystem::path run_dir = "runs";
   std::string secure{};
 };
@@ -29,19 +29,19 @@ class PageContent {
   explicit PageContent(const PageContentOptions& options)
       : options_(options), live_(options.secure) {}
 
-  // Folder of a run that is shown; empty when there is none of that name. No path is ever made of
-  // the name.
+  // Folder of a run that the page shows; empty if there is no run of that name. The name is
+  // compared with those of the runs; no path is built from it.
   std::optional<std::filesystem::path> FindRun(const std::string& name) const;
 
   std::string Runs();
   std::string Run(const std::filesystem::path& run) const;
   std::string Top(const std::filesystem::path& run);
   std::string Curves(const std::filesystem::path& run);
-  // Carries out an order to a run (ParsePageOrder), and returns {"text": what was done}.
+  // Sends an order to a run (ParsePageOrder), and returns {"text": result}.
   std::string Carry(const std::filesystem::path& run, const std::string& body);
   std::string Play(const std::filesystem::path& run);
 
-  // Film of the run's played episode; empty while there is none.
+  // Film of the run's played episode; empty if there is none.
   std::filesystem::path EpisodeFilm(const std::filesystem::path& run) const;
   void Tend() { live_.LeaveUnwatched(Now()); }
 
@@ -59,7 +59,7 @@ class PageContent {
   Mutex curves_mutex_;
   std::map<std::filesystem::path, CurvesOf> curves_ SHOAL_GUARDED_BY(curves_mutex_);
   Mutex runs_mutex_;
-  std::string runs_ SHOAL_GUARDED_BY(runs_mutex_);  // the answer of a moment ago, for all who ask
+  std::string runs_ SHOAL_GUARDED_BY(runs_mutex_);  // recent answer of Runs()
   SteadyTime runs_of_ SHOAL_GUARDED_BY(runs_mutex_){};
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page itself: what is built into the program, and the library that draws its curves.
+// The parts of the page: files built into the program, and the chart library.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@
 
 namespace shoal::launch {
 
-// The folder of dygraphs: that of the bundle or prefix that the program belongs to, else that of
-// Debian's package libjs-dygraphs.
+// The folder of dygraphs: in the bundle or prefix of the program, else in Debian's package
+// libjs-dygraphs.
 std::filesystem::path ChartLibrary();
 
 struct PagePart {
@@ -17,8 +17,8 @@ struct PagePart {
   std::string content;
 };
 
-// By name: "index.html", "page.js", "dygraph.min.js", ... Reads the chart library from its folder.
-// Throws Error naming the file that is missing, and its package.
+// The parts by name: "index.html", "page.js", "dygraph.min.js", ... Reads the chart library from
+// its folder. Throws Error naming a missing file and its package.
 std::map<std::string, PagePart> LoadPageParts(
     const std::filesystem::path& chart_library = ChartLibrary());
 

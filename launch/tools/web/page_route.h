@@ -5,7 +5,7 @@
 //         /page.js, /dygraph.min.js ... a part of it
 //         /api/runs                     every run and its state
 //         /api/runs/NAME                films, reports and pictures of a run; its played episode
-//         /api/runs/NAME/top            what `shoal top` shows of it
+//         /api/runs/NAME/top            output of `shoal top` for the run
 //         /api/runs/NAME/curves         its curves
 //         /files/NAME/videos/best.mp4   a file of its folder (served_file.h)
 //         /episode/NAME                 the film of its played episode
@@ -20,7 +20,7 @@ namespace shoal::launch {
 
 enum class PageItem {
   kNothing,  // there is no such thing
-  kPart,     // of the page; also the page itself, "index.html"
+  kPart,     // of the page, including "index.html"
   kRuns,
   kRun,
   kTop,
@@ -33,11 +33,11 @@ enum class PageItem {
 
 struct PageRoute {
   PageItem item = PageItem::kNothing;
-  std::string run{};   // name, as asked for: not yet one of those there are
+  std::string run{};   // name in the request; the run may not exist
   std::string file{};  // kPart: name; kFile: path below the run's folder
 };
 
-// `path` without its query, percent signs decoded.
+// `path`: without the query, with percent signs decoded. `acts`: the method is not GET or HEAD.
 PageRoute ParsePageRoute(bool acts, std::string_view path);
 
 }  // namespace shoal::launch

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files of launch/tools/web/pages, built in.
+// The files of launch/tools/web/pages, built into the program.
 #pragma once
 
 namespace shoal::launch {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// An episode that a run's newest checkpoint plays for who looks, as a film: what the policy sees
-// beside a larger view. Made by the evaluation's own program, beside the run and at a lower
-// priority, when it is asked for; kept in memory's stead in a scratch folder, not in the run's.
+// An episode that a run's newest checkpoint plays for the page, as a film: the policy's input
+// beside a larger view. The evaluation's program plays the episode on request, at a lower priority
+// than the run. The film is kept in a scratch folder, not in the run's folder.
 #pragma once
 
 #include <atomic>
@@ -26,17 +26,17 @@ struct PlayedEpisode {
   std::filesystem::path film{};         // kReady
 };
 
-// Any thread. One episode is played at a time; the newest of each of a few runs is kept.
+// Any thread. One episode is played at a time. The newest episode of a run is kept, for a few runs.
 class PlayedEpisodes {
  public:
   PlayedEpisodes() = default;
-  // Ends what is being played.
+  // Ends an episode that is being played.
   ~PlayedEpisodes();
   PlayedEpisodes(const PlayedEpisodes&) = delete;
   PlayedEpisodes& operator=(const PlayedEpisodes&) = delete;
 
-  // Returns when the playing has begun. Throws Error: another episode is being played, or the run
-  // has no checkpoint yet.
+  // Starts an episode and returns. Throws Error: another episode is being played, or the run has no
+  // checkpoint yet.
   void Play(const std::filesystem::path& run);
   PlayedEpisode Of(const std::filesystem::path& run) const;
 

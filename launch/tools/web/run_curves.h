@@ -12,8 +12,8 @@
 
 namespace shoal::launch {
 
-// A curve of bounded size, however long it grows: when it is full, every second point goes, and
-// of those that come only so many are kept. The newest point is always there.
+// A curve of bounded size. When the curve is full, every second point is removed, and from then on
+// only as many of the new points are kept. The newest point is always included.
 class ThinnedCurve {
  public:
   struct Point {
@@ -36,11 +36,11 @@ class RunCurves {
  public:
   explicit RunCurves(const std::filesystem::path& run) : run_(run) {}
 
-  // Reads what has come since, at most `most_bytes` of it. A file that was begun anew is read anew.
-  // Never throws for what is in the files: lines that make no sense are passed over.
+  // Reads the lines added since the last call, at most `most_bytes`. A file that was replaced is
+  // read from its beginning. Never throws because of the files' content: invalid lines are skipped.
   void ReadOn(uint64_t most_bytes = 8'000'000);
 
-  // {"complete": there is nothing more to be read,
+  // {"complete": whether the files are read to their end,
   //  "charts": [{"id", "title", "meaning", "series": [{"name", "points": [[x, y], ...]}]}]},
   // charts with at least one point.
   std::string Json() const;

@@ -11,27 +11,27 @@
 namespace shoal::launch {
 
 struct WebOptions {
-  std::string run{};  // name within run_dir, or folder: the page shows this one only; empty = all
+  std::string run{};  // the only run shown: name in run_dir, or folder; empty = all
   std::string run_dir = "runs";
   std::string secure{};    // folder of credentials; empty = as each run's cluster.json says
-  ListenAddress listen{};  // port 0: one of the system's choice
+  ListenAddress listen{};  // port 0: the system chooses a port
 };
 
 class WebServer {
  public:
-  // Listens, and answers on threads of its own until destruction, which waits for none of them
-  // longer than a moment. Throws Error: no such run, address or port that cannot be listened on, a
-  // part of the page that is not installed.
+  // Listens, and answers on its own threads until destruction, which waits only briefly for each of
+  // them. Throws Error: the run does not exist, the address or port cannot be used, or a part of
+  // the page is not installed.
   explicit WebServer(const WebOptions& options);
   ~WebServer();
   WebServer(const WebServer&) = delete;
   WebServer& operator=(const WebServer&) = delete;
 
   uint16_t port() const;
-  const std::string& token() const;  // for who may see and steer (access.h)
+  const std::string& token() const;  // gives access to the page (access.h)
   // "http://127.0.0.1:8470/?token=..."
   std::string Url() const;
-  // Leaves runs that no page shows any more. Call it every few seconds.
+  // Leaves runs that no page shows any more. Call every few seconds.
   void Tend();
 
  private:
