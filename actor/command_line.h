@@ -24,7 +24,7 @@ struct Options {
   dds::EndpointOptions endpoint;
 };
 
-// `options` must outlive the command line.
+// Makes the parser, which writes to `options`. `options` must outlive the parser.
 std::unique_ptr<CLI::App> MakeCommandLine(Options* options);
 
 }  // namespace shoal::actor

@@ -12,29 +12,29 @@
 
 namespace shoal::actor {
 
-// An environment and what its spaces say.
+// An environment and the description of its spaces.
 struct OpenedEnvironment {
-  tasks::EnvironmentDescription description;  // without what playing shows
+  tasks::EnvironmentDescription description;  // without the facts that only playing shows
   std::unique_ptr<hosted::RawEnvironment> raw;
 };
 
 // The use that an environment is opened for.
 enum class Purpose {
   kPlay,
-  kShow,      // it will be asked for pictures
-  kDescribe,  // the description says whether Shoal can compute its rewards for other goals
+  kShow,      // plays and renders pictures
+  kDescribe,  // also finds out whether Shoal can compute the rewards for other goals
 };
 
 // Opens the environment of config.env. Throws Error.
 using EnvironmentOpener = std::function<OpenedEnvironment(const Config&, Purpose)>;
 
-// `shows`: the environments of this process will be asked for pictures.
+// `shows`: the environments of this process will render pictures.
 ActorParts HostedParts(EnvironmentOpener open, bool shows);
 
 // Environments of a library (actor/hosted/environment_library.h).
 ActorParts LibraryParts(bool shows);
 
-// Shoal's own worlds or environments of a library, as the configuration says.
+// Shoal's own worlds or environments of a library, depending on the configuration.
 ActorParts WorldOrLibraryParts(bool shows);
 
 }  // namespace shoal::actor

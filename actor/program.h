@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// shoal-actor: one program, four uses: training actor, evaluation actor, evaluation of a
-// checkpoint, description of what the actors of a configuration observe.
+// The program `shoal-actor`. It has four uses: training actor, evaluation actor, evaluation of a
+// checkpoint, and description of the observations of a configuration.
 #pragma once
 
 #include <functional>
@@ -11,9 +11,9 @@
 
 namespace shoal::actor {
 
-// The parts of an actor that depend on where the environments come from.
+// The parts of an actor that depend on the source of its environments.
 struct ActorParts {
-  // Makes the tasks of a configuration known. Before threads. Throws Error.
+  // Registers the tasks of a configuration. Call it before threads start. Throws Error.
   std::function<void(const RunConfig&)> add_tasks;
   EvaluationEnvironments environments;
   // The answer of --describe about a configuration, as JSON. Throws Error.
@@ -23,8 +23,8 @@ struct ActorParts {
 // Shoal's own worlds.
 ActorParts WorldParts();
 
-// Runs what the command line asks for; returns the exit code. Throws Error (kUsage) on a command
-// line that makes no sense, else as what was asked for does.
+// Runs the use that the command line selects and returns the exit code. Throws Error (kUsage) if
+// the command line is invalid, and the errors of the selected use.
 int RunActorProgram(int argc, char** argv, const ActorParts& parts);
 
 }  // namespace shoal::actor

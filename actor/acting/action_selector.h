@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chooses the actions of E environments at once: uniform random until the first weights, then what
-// the policy says, with or without exploration.
+// Chooses the actions of E environments at once: uniform random until the first weights arrive,
+// then the policy's actions, with or without exploration.
 //
 // One thread.
 #pragma once
@@ -19,29 +19,29 @@
 
 namespace shoal::actor {
 
-// Whatever is asked for, actions are uniform random before the first weights.
+// How actions are chosen. Before the first weights, all modes give uniform random actions.
 enum class Acting {
   kUniform,  // each component ~ U(-1, 1)
   kExplore,  // actor/acting/exploration.h
-  kMean,     // tanh(mean), or clip(mean, -1, 1) of an unsquashed policy: evaluation
+  kMean,     // for evaluation: tanh(mean), or clip(mean, -1, 1) if the policy is unsquashed
 };
 
 class ActionSelector {
  public:
-  // `actor`: its number within the run, for its factor of the noise.
+  // `actor`: number of the actor within the run; selects the actor's noise factor.
   ActionSelector(const Config& config, const ObservationSpec& spec, int envs, uint32_t actor = 0);
 
-  // Throws Error when the weights do not fit the network; the old ones then stay.
+  // Loads weights. Throws Error if the weights do not fit the network, and keeps the old weights.
   void Load(const ReceivedWeights& weights);
   WeightsVersion version() const { return version_; }
-  // Env steps of the whole run when those weights were made; 0 before any.
+  // Env steps of the whole run when the loaded weights were made; 0 before the first weights.
   uint64_t run_env_steps() const { return run_env_steps_; }
 
   // Starts the exploration stream of an episode of local environment `e`.
   void BeginEpisode(int e, uint64_t stream_key);
 
-  // Position of that stream, and the state that the noise carries over from step to step, so that
-  // another process can continue both. SetNoise throws Error if the state belongs to another kind
+  // Position of an exploration stream, and the state that the noise carries from step to step.
+  // Another process can continue both. SetNoise throws Error if the state belongs to another kind
   // of exploration.
   struct Noise {
     Random::State stream{};
@@ -55,8 +55,8 @@ class ActionSelector {
   std::span<uint8_t> FrameStackOf(int e);
   std::span<float> VectorOf(int e);
 
-  // actions (E, A) in [-1, 1], valid until the next call. `asked` (E): of these environments alone;
-  // the actions and the noise of the others stay. Empty = of all.
+  // Chooses actions (E, A) in [-1, 1], valid until the next call. `asked` (E) selects environments;
+  // empty = all. The actions and the noise of the other environments do not change.
   void Select(Acting acting, const std::vector<bool>& asked = {});
   std::span<const float> ActionOf(int e) const;
   // If kExplore and the spec has drawn actions: the drawn action, before it was clipped, and its
@@ -73,7 +73,7 @@ class ActionSelector {
   std::vector<Random> streams_;
   std::vector<uint8_t> frames_;
   std::vector<float> vectors_, actions_;
-  std::vector<float> drawn_;      // (E, A); empty: not asked for
+  std::vector<float> drawn_;      // (E, A); empty unless the spec has drawn actions
   std::vector<float> log_probs_;  // (E)
 };
 

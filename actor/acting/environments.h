@@ -11,12 +11,12 @@
 
 namespace shoal::actor {
 
-// Makes so many environments of the run.
+// Makes the given number of environments of the run.
 using EnvironmentFactory =
     std::function<std::vector<std::unique_ptr<worlds::Environment>>(const RunConfig&, int)>;
 
-// `count` environments sharing one render context. Throws Error naming both sides when what they
-// observe is not what the run's config.json says.
+// Makes `count` environments that share one render context. Throws Error naming both specs if the
+// environments' observation spec differs from the one in the run's config.json.
 std::vector<std::unique_ptr<worlds::Environment>> MakeEnvironments(const RunConfig& run, int count);
 
 }  // namespace shoal::actor

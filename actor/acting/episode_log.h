@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Figures of one episode, and of the episodes that ended lately, for metrics.
+// Figures of one episode, and means over the most recent episodes, for metrics.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +14,8 @@ namespace shoal::actor {
 struct EpisodeFigures {
   double episode_return = 0;     // unscaled
   int length = 0;                // env steps
-  bool success = false;          // at the end; false where the task has none
-  double final_distance = 0;     // m; NaN where the task has none
+  bool success = false;          // at the end; false for tasks without success
+  double final_distance = 0;     // m; NaN for tasks without goals
   double action_smoothness = 0;  // mean over steps of |a_t - a_{t-1}|_2; smaller is smoother
   std::vector<worlds::DrawnMass> drawn_masses{};  // empty unless randomized
 };
@@ -27,8 +27,8 @@ class EpisodeLog {
 
   void Add(const EpisodeFigures& figures);
   uint64_t count() const { return count_; }
-  // All zero before the first episode; `success` is not averaged (SuccessRate). Episodes of one run
-  // draw the same bodies' masses.
+  // Mean figures; all zero before the first episode. `success` is not averaged: see SuccessRate.
+  // All episodes of a run randomize the masses of the same bodies.
   EpisodeFigures Mean() const;
   double SuccessRate() const;
 

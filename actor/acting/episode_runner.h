@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One environment and what belongs to the episode it plays: the pictures (the frame stack, then the
-// goal picture where the policy sees one) and the vector that the policy reads next, the episode's
-// figures, whether it still runs. Rollouts and evaluations are made of episode runners.
+// One environment and the state of its running episode: the policy's next input and the episode's
+// figures. The input consists of a vector and of pictures: the frame stack, then the goal picture
+// if the policy has one. Rollouts and evaluations consist of episode runners.
 //
 //   Begin: reset -> stack, vector -> figures        Step: step -> stack, vector -> figures
 #pragma once
@@ -25,16 +25,16 @@ class EpisodeListener {
     std::span<const uint8_t> stack;  // (I, H, W): the policy's next input, after the step
     std::span<const float> action;   // (A)
     float reward = 0;                // unscaled
-    bool success = false;            // false where the task has none
+    bool success = false;            // false for tasks without success
     bool ended = false;              // the step was the episode's last
   };
 
   virtual ~EpisodeListener() = default;
-  // The episode's stream key; stack (I, H, W): the policy's first input of the episode.
+  // Called when an episode begins, with its stream key. stack (I, H, W): the policy's first input.
   virtual void OnBegin(uint64_t stream_key, std::span<const uint8_t> stack) = 0;
   virtual void OnStep(const SeenStep& step) = 0;
-  // The episode ended at its last step, or at its beginning: the step after that was faulty. The
-  // stack is still that of then.
+  // Called after a faulty step, which ends the episode at the observation before. `stack` is the
+  // stack of that observation.
   virtual void OnFault(std::span<const uint8_t> stack) = 0;
 };
 
@@ -48,29 +48,30 @@ class EpisodeRunner {
     std::span<float> vector;
   };
 
-  // CHECK on an input of other sizes than the environment's spec says.
+  // CHECK: the input has the sizes of the environment's spec.
   EpisodeRunner(std::unique_ptr<worlds::Environment> environment, PolicyInput input);
 
-  // Starts the episode of a stream key; the observation is written to `out`, with every block, and
-  // what the policy sees of it into the policy's input. After `cut_after` env steps it is
-  // truncated, as by a time limit, if it still runs; 0 = its environment ends it. Returns the
-  // distance at the start. Errors: as of Environment; no episode runs then.
+  // Starts the episode of a stream key. Writes the observation with every block to `out`, and the
+  // part that the policy sees to the policy's input. If the episode still runs after `cut_after`
+  // env steps, it is truncated as by a time limit; 0 = the environment ends it. Returns the
+  // distance at the start. Throws the errors of Environment::Reset; no episode runs then.
   float Begin(uint64_t stream_key, worlds::ObservationOut out, int cut_after = 0);
-  // One env step of the running episode, which it may end. Throws EpisodeFault: the episode has
-  // ended, truncated and without success, at the observation before; the step does not count, and
-  // neither `out` nor the policy's input was changed.
+  // Plays one env step of the running episode; the step may end the episode. If the step is faulty,
+  // throws EpisodeFault: the episode has ended, truncated and without success, at the observation
+  // before. The faulty step does not count, and `out` and the policy's input are unchanged.
   worlds::StepResult Step(std::span<const float> action, worlds::ObservationOut out);
-  // Argument of Begin for the episode that runs or has just ended; 0 = it is whole.
+  // The `cut_after` of the running or last episode; 0 = the episode is not cut short.
   int cut_after() const { return cut_after_; }
   // Forgets a running episode.
   void Abandon() { running_ = false; }
 
   bool running() const { return running_; }
-  // Figures of the running episode, or of the last one; complete once that has ended.
+  // Figures of the running or last episode; complete once the episode has ended.
   const EpisodeFigures& figures() const { return figures_; }
   const worlds::Environment& environment() const { return *environment_; }
 
-  // Called for every Begin and Step from now on. Borrowed until it is replaced; nullptr = none.
+  // Sets the listener of every later Begin and Step. The listener is borrowed until it is replaced;
+  // nullptr = none.
   void set_listener(EpisodeListener* listener) { listener_ = listener; }
 
  private:

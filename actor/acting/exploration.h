@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exploration: from a policy's output to the action that is played. Independent of the policy and
-// of the pace. Each episode has a random stream of its own for all its draws.
+// Exploration: computes the played action from a policy's output. Independent of the policy and of
+// the pace. Each episode has its own random stream for all its draws.
 //
 //   squashed_gaussian   a = tanh(mean + f exp(log_std) eps)           Eq. 4 of docs/algorithm.md
 //   gaussian            a = clip(tanh(mean) + f sigma eps, -1, 1)
@@ -32,11 +32,12 @@ class Exploration {
  public:
   virtual ~Exploration() = default;
 
-  // The env steps of the whole run, for schedules.
+  // Sets the env steps of the whole run, for schedules.
   virtual void OnEnvSteps(uint64_t run_env_steps) = 0;
   // Resets the state that the noise of environment `e` carried over from its previous episode.
   virtual void BeginEpisode(int e) = 0;
-  // Writes the action (A) of environment `e`, each in [-1, 1]. `policy`: its rows, (A).
+  // Writes the action (A) of environment `e`, each component in [-1, 1]. `policy`: rows (A) of the
+  // environment.
   virtual void Act(int e, const nn::PolicyOutput& policy, Random& stream,
                    std::span<float> action) = 0;
   // Result of the last Act, for on-policy learning: the drawn action, written to `drawn` (A), and

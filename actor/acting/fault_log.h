@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faulty episodes: those that ended at a number of the simulation that is not finite. Counts them
+// Log of faulty episodes, which end because a number of the simulation is not finite. Counts them
 // by cause, logs at most one line in ten seconds, and ends the run if there are too many.
 //
 //   too many: more than max_faulty_share * kWindow of the newest kWindow episodes were faulty
 //
-// Before kWindow episodes the limit is the same number of episodes, so that a task whose every
-// episode is faulty ends the run early.
+// During the first kWindow episodes the limit is the same number of faulty episodes. A task that
+// only has faulty episodes therefore ends the run early.
 #pragma once
 
 #include <array>
@@ -30,13 +30,13 @@ class FaultLog {
   explicit FaultLog(double max_share, std::function<SteadyTime()> now = Now)
       : max_share_(max_share), now_(std::move(now)) {}
 
-  // An episode ended without a fault.
+  // Counts an episode that ended without a fault.
   void Ended() { Add(false); }
-  // An episode was faulty, or could not begin. Throws Error (kNonFinite) with the fault's message
-  // if there are too many.
+  // Counts an episode that was faulty or could not begin. Throws Error (kNonFinite) with the
+  // fault's message if there are too many.
   void Count(const worlds::EpisodeFault& fault);
 
-  // Since construction.
+  // Faulty episodes of a cause since construction.
   uint64_t count(worlds::FaultCause cause) const { return counts_[static_cast<size_t>(cause)]; }
   uint64_t total() const;
 
@@ -50,7 +50,7 @@ class FaultLog {
   size_t next_ = 0, episodes_ = 0;
   std::array<uint64_t, worlds::kFaultCauses.size()> counts_{};
   std::optional<SteadyTime> logged_;
-  uint64_t unsaid_ = 0;  // since the last line
+  uint64_t unsaid_ = 0;  // faults since the last log line
 };
 
 }  // namespace shoal::actor

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Source of a training actor's weights: one process of a host receives them and posts them on a
-// board (weights_board.h), the others read them there. So a version crosses the network, and is
-// unpacked, once per host and not once per actor.
+// Source of a training actor's weights. One process of each host receives the weights and writes
+// them to a board in shared memory (weights_board.h); the other processes of the host read the
+// board. A version is therefore sent and unpacked once per host, not once per actor.
 //
-// The process that holds the lock RUN/made/weights-HOST.lock receives, and writes the address of
-// its board beside it, into RUN/made/weights-HOST.json. The lock is free as soon as its holder
-// ends, for whatever reason. The neighbours try to take it once a second; the one that succeeds
-// receives from then on. A process that cannot read the board for kPatience (another namespace of
-// processes, another user, a holder that is stopped) receives for itself, until it ends.
+// The process that holds the lock RUN/made/weights-HOST.lock is the receiver. The receiver writes
+// the address of its board to RUN/made/weights-HOST.json. The kernel frees the lock when its holder
+// ends. The other processes try to take the lock once a second; the one that succeeds becomes the
+// receiver. If a process cannot read the board for kPatience (another PID namespace, another user,
+// a stopped holder), the process receives weights for itself alone until it ends.
 #pragma once
 
 #include <chrono>
@@ -25,19 +25,19 @@
 
 namespace shoal::actor {
 
-// One thread, but for what the inbox takes from the receive thread.
+// One thread. Only the inbox is also used by the receive thread.
 class HostWeights final : public WeightsSource {
  public:
-  // Lets parts come into the inbox until what it returns is destroyed.
+  // Subscribes the inbox to weights. Destroying the returned object ends the subscription.
   using Subscribe = std::function<std::shared_ptr<void>(WeightsInbox&)>;
 
-  // `host` names this host in file names. Nothing happens before the first TryTake().
+  // `host` names this host in file names. The first TryTake() takes the lock or opens the board.
   HostWeights(const std::filesystem::path& run, const std::string& host, uint64_t spec_hash,
               Subscribe subscribe);
 
   std::optional<ReceivedWeights> TryTake() override;
 
-  // Whether this process receives, for its neighbours or for itself alone.
+  // True if this process receives weights, for its neighbours or for itself alone.
   bool receives() const { return subscription_ != nullptr; }
   uint64_t refused() const { return inbox_.refused(); }
 
@@ -46,7 +46,7 @@ class HostWeights final : public WeightsSource {
  private:
   void Look(SteadyTime now);
   bool TryReceiveForHost();
-  // Why the holder's board is of no use now; empty while it is.
+  // Opens the holder's board. Returns why the board cannot be used; empty = it can be used.
   std::string OpenBoard();
   void ReceiveAlone(const std::string& reason);
   void Post(const ReceivedWeights& weights);
@@ -57,11 +57,11 @@ class HostWeights final : public WeightsSource {
   WeightsVersion taken_;
 
   SteadyTime next_look_{};
-  std::optional<SteadyTime> useless_since_;  // the board
+  std::optional<SteadyTime> useless_since_;  // since when the board cannot be read
   std::unique_ptr<WeightsBoardReader> reader_;
 
   std::optional<FileLock> lock_;
-  std::unique_ptr<WeightsBoard> board_;  // the receive thread's once there is a subscription
+  std::unique_ptr<WeightsBoard> board_;  // used by the receive thread during the subscription
   WeightsInbox inbox_;
   std::shared_ptr<void> subscription_;
 };

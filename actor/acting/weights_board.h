@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Weights that one process of a host has received, in shared memory (common/base/shared_memory.h)
-// for its neighbours: a board of fixed size, and memory of its own for each version, written once
-// before the board names it. The board names the newest two, so that a reader that was late by one
-// still finds what it looked up; what a reader has mapped stays whole.
+// Shared memory (common/base/shared_memory.h) through which one process of a host passes received
+// weights to its neighbours. There is a board of fixed size, and separate memory for each version.
+// A version is written once, before the board names it. The board names the newest two versions, so
+// a reader that is late by one version still finds the version that it looked up. Mapped versions
+// stay valid.
 //
 //   board   0   8     magic "SHOALWB1"
 //           8   16    token, random
 //           24  8     observation spec's hash
-//           32  8     number of the newest version, from 1; 0 = none yet, 2^64 - 1 = no more
-//           40  2 x   descriptor, bytes (8 each): version n has place n mod 2
+//           32  8     number of the newest version, from 1; 0 = none yet, 2^64 - 1 = closed
+//           40  2 x   descriptor, bytes (8 each): version n is at index n mod 2
 //   version 0   8     magic "SHOALWV1"
 //           8   16    the board's token
 //           24  8     number
@@ -35,15 +36,15 @@ struct BoardAddress {
   bool operator==(const BoardAddress&) const = default;
 };
 
-// The receiving process's side. Owns the memory. Any thread, one at a time.
+// Writing side, in the receiving process. Owns the memory. Any thread, one at a time.
 class WeightsBoard {
  public:
-  // Throws Error: SharedMemory::Make.
+  // Throws the errors of SharedMemory::Make.
   explicit WeightsBoard(uint64_t spec_hash);
 
   const BoardAddress& address() const { return address_; }
-  // The checkpoint's name, which evaluations alone need, is left out. Without memory for them the
-  // board is closed for good and Error is thrown.
+  // Adds a version, without the checkpoint's name, which only evaluations need. If memory for the
+  // version cannot be allocated, closes the board permanently and throws Error.
   void Post(const ReceivedWeights& weights);
 
  private:
@@ -53,25 +54,25 @@ class WeightsBoard {
   std::array<Descriptor, 2> versions_;
 };
 
-// A neighbour's side. One thread.
+// Reading side, in a neighbour process. One thread.
 class WeightsBoardReader {
  public:
-  // Throws Error when no board of this spec lies there.
+  // Throws Error if there is no board of this spec at the address.
   WeightsBoardReader(const BoardAddress& address, uint64_t spec_hash);
 
   const BoardAddress& address() const { return address_; }
-  // The newest version, once. Empty also where it has just been replaced: the next look finds its
-  // successor.
+  // Returns the newest version, each version once. Empty if there is no new version, or if the
+  // version was replaced during the call; the next call then finds its successor.
   std::optional<ReceivedWeights> TryTake();
-  // There will be no more.
+  // True if no further version will be added.
   bool closed() const;
-  // The last version that was looked up could not be read, and none since.
+  // True if the last version that was looked up could not be read, and no later one was read.
   bool failed() const { return failed_; }
 
  private:
   const BoardAddress address_;
   const SharedMemory memory_;
-  uint64_t taken_ = 0;  // its number
+  uint64_t taken_ = 0;  // number of the last version taken
   bool failed_ = false;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The newest weights received, handed from the DDS receive thread to the acting loop.
+// The newest received weights, passed from the DDS receive thread to the acting loop.
 #pragma once
 
 #include <cstdint>
@@ -27,23 +27,24 @@ struct ReceivedWeights {
 class WeightsSource {
  public:
   virtual ~WeightsSource() = default;
-  // Weights newer than any taken before, if there are any. Does not wait.
+  // Returns weights that are newer than all weights taken before, if any. Does not wait.
   virtual std::optional<ReceivedWeights> TryTake() = 0;
 };
 
 class WeightsInbox final : public WeightsSource {
  public:
-  // `on_newest` sees each version that is kept, on the receive thread, before it can be taken.
+  // `on_newest` is called on the receive thread with each version that is kept, before the version
+  // can be taken.
   using OnNewest = std::function<void(const ReceivedWeights&)>;
   explicit WeightsInbox(uint64_t spec_hash, OnNewest on_newest = {})
       : spec_hash_(spec_hash), on_newest_(std::move(on_newest)) {}
 
-  // Receive thread. Keeps the newest version whose parts have all arrived; parts of another spec or
-  // with a wrong CRC are counted and dropped.
+  // Called on the receive thread. Keeps the newest complete version. Parts of another spec or with
+  // a wrong CRC are counted and dropped.
   void OnMessage(const WeightsPart& part);
 
   std::optional<ReceivedWeights> TryTake() override;
-  // The same, waiting until `deadline`.
+  // Like TryTake, but waits until `deadline`.
   std::optional<ReceivedWeights> Take(SteadyTime deadline);
 
   uint64_t refused() const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The evaluation actor: plays the parameters that the learner hands out for evaluation.
+// The evaluation actor: plays episodes with the parameters that the learner sends for evaluation.
 #pragma once
 
 #include <cstdint>
@@ -17,23 +17,24 @@
 
 namespace shoal::actor {
 
-// Members are in construction order: readers end before what they write to.
+// Members are in construction order, so readers are destroyed before the inboxes they write to.
 class EvalActor {
  public:
-  // For the run in `folder`; `make`: as the Evaluator's. One thread constructs and runs it. Borrows
-  // the hub. Throws Error.
+  // Serves the run in `folder`. `make`: see Evaluator. The same thread constructs the actor and
+  // calls Run. Borrows the hub. Throws Error.
   EvalActor(const std::filesystem::path& folder, link::Hub& hub,
             const EnvironmentFactory& make = MakeEnvironments);
 
-  // Evaluates until told to stop (0) or the coordinator is gone (1). Throws Error.
+  // Evaluates until a stop is requested (returns 0) or the coordinator is lost (returns 1). Throws
+  // Error.
   int Run();
 
  private:
-  // One weights version for the whole evaluation; newer ones wait in the inbox.
+  // Plays a whole evaluation with one weights version; newer versions wait in the inbox.
   void Evaluate(const ReceivedWeights& weights);
 
-  // Throws Error at the deadline. The learner's parameters stay on offer: the next process of this
-  // role plays the evaluation again.
+  // Sends a message. Throws Error at the deadline. The learner keeps sending the parameters, so the
+  // next process of this role plays the evaluation again.
   void Send(const EvalMessage& message);
 
   void WarnOfOvertaken();

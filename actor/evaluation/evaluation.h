@@ -27,8 +27,8 @@ namespace shoal::actor {
 struct EpisodeResult {
   int64_t seed = 0;  // number of the episode in its stream
   EpisodeFigures figures;
-  // For tasks that have causes of failure (failure_cause.h): the goal and the achieved goal at the
-  // end, in m, and the cause if the episode failed.
+  // Desired and achieved goal at the end, in m, and the cause if the episode failed. Empty for
+  // tasks without causes of failure (failure_cause.h).
   std::vector<double> desired{}, achieved{};
   std::optional<FailureCause> failure{};
   // The fault of a faulty episode, which counts as failed: it ended, or could not begin, because a
@@ -36,8 +36,9 @@ struct EpisodeResult {
   std::optional<worlds::FaultCause> fault{};
 };
 
-// Which episodes are played: episode k starts from StreamKey(seed, role, group, k). Train,
-// evaluation and final streams never meet; `group` makes each evaluation's episodes fresh.
+// Selects the episodes that are played: episode k starts from StreamKey(seed, role, group, k).
+// Train, evaluation and final streams share no episodes. `group` gives each evaluation new
+// episodes.
 struct EpisodeStream {
   int64_t seed = 0;
   StreamRole role = StreamRole::kEvalEnvironment;
@@ -48,14 +49,14 @@ struct EpisodeStream {
 };
 
 // Stream of the episodes that evaluate a checkpoint of a run. The evaluation of a draining run may
-// have the env steps of the evaluation before; the updates since then give it other episodes. The
-// same checkpoint, evaluated again after a restart, gets the same episodes.
+// have the same env steps as the evaluation before; its number of updates selects other episodes.
+// A checkpoint that is evaluated again after a restart gets the same episodes.
 EpisodeStream EvaluationStream(int64_t seed, uint64_t env_steps, uint64_t updates);
 
 // The part of eval/*.json that names the source of its numbers.
 struct EvaluationLabel {
   std::string policy;           // "checkpoint" | "random" | "noop"
-  std::string checkpoint = "";  // folder name; empty, as version, unless policy = "checkpoint"
+  std::string checkpoint = "";  // folder name; empty (like version) unless policy = "checkpoint"
   WeightsVersion version = {};
   uint64_t env_steps = 0;
 };
@@ -63,21 +64,21 @@ struct EvaluationLabel {
 // Environments stepped together and the policy that acts in them. One thread.
 class Evaluator {
  public:
-  // Throws Error when the environment's spec is not the run's. `noop`: every action is zero,
-  // whatever the policy. `make`: the task's environments; tests bring cheaper ones.
+  // Throws Error if the environment's spec is not the run's. `noop`: every action is zero. `make`
+  // makes the task's environments; tests use cheaper ones.
   explicit Evaluator(const RunConfig& run, bool noop = false,
                      const EnvironmentFactory& make = MakeEnvironments);
 
   ActionSelector& selector() { return selector_; }
-  // Calls the listener, which is borrowed, for every episode from now on. CHECK: there is one
-  // environment, so that episodes follow one another.
+  // Sets the listener of every later episode. The listener is borrowed. CHECK: there is only one
+  // environment, so episodes do not overlap.
   void Listen(EpisodeListener* listener);
 
-  // Plays `episodes` whole episodes, actions by the mean of the policy (or uniform random before
-  // any weights). `stop` is called after each step. If it returns true before all have ended,
-  // returns the leading episodes that have ended, so that short episodes are not preferred. After
-  // each episode `on_ended` receives the number of ended ones. Faulty episodes are logged; they are
-  // no error, however many there are.
+  // Plays `episodes` whole episodes with the mean action of the policy (or uniform random actions
+  // if no weights are loaded). `stop` is called after each step. If `stop` returns true before all
+  // episodes have ended, returns the leading ended episodes, so short episodes are not preferred.
+  // After each episode `on_ended` receives the number of ended episodes. Faulty episodes are logged
+  // and are no error, however many there are.
   std::vector<EpisodeResult> Play(int episodes, const EpisodeStream& stream,
                                   const std::function<bool()>& stop,
                                   const std::function<void(int ended)>& on_ended = {});
@@ -103,11 +104,11 @@ class Evaluator {
   void End(const Player& player, std::optional<worlds::FaultCause> fault, Played* played);
 
   const RunConfig run_;
-  const std::vector<float> noop_;  // the action of every step; empty = the policy's
+  const std::vector<float> noop_;  // action of every step; empty = the policy's actions
   ActionSelector selector_;
   std::vector<Player> players_;
   FaultLog faults_{/*max_share=*/2};
-  // Buffer for the newest observation of an environment, until it is in the policy's input.
+  // Buffer for the newest observation of an environment.
   std::vector<uint8_t> frame_;
   std::vector<float> vector_;
 };
@@ -116,7 +117,7 @@ class Evaluator {
 EvaluationFile MakeEvaluation(const RunConfig& run, const EvaluationLabel& label,
                               const EpisodeStream& stream,
                               const std::vector<EpisodeResult>& episodes);
-// ToJson of it.
+// The content of MakeEvaluation as JSON.
 nlohmann::ordered_json EvaluationJson(const RunConfig& run, const EvaluationLabel& label,
                                       const EpisodeStream& stream,
                                       const std::vector<EpisodeResult>& episodes);
@@ -124,19 +125,19 @@ nlohmann::ordered_json EvaluationJson(const RunConfig& run, const EvaluationLabe
 struct CheckpointEvaluation {
   int episodes = 100;
   int64_t seed = 1;
-  // Another task to play than the run's (see WithTask), named beside the run's own as trained_task;
-  // empty = the run's.
+  // Task to play in place of the run's (see WithTask); the result then names the run's task as
+  // trained_task. Empty = the run's task.
   std::string task = "";
-  // Destination of frames, if any; the episodes are then played one after the other.
+  // Destination of recorded frames, if any. Episodes are then played one after the other.
   std::optional<FrameRecorder::Options> frames = {};
-  // If asked to stop, the result is that of the episodes played so far, with `episodes_asked`, if
-  // there are any.
+  // If true, a stopped evaluation returns the result of the episodes played so far, if any, with
+  // `episodes_asked`.
   bool partial = false;
-  // Called after each episode with the number of ended ones.
+  // Called after each episode with the number of ended episodes.
   std::function<void(int ended)> on_ended = {};
 };
-// Plays fresh episodes (final stream of the seed) with the policy of a checkpoint folder of the
-// run. Throws Error when it is asked to stop, unless `partial` is set.
+// Plays new episodes (final stream of the seed) with the policy of a checkpoint folder of the run.
+// Throws Error if a stop is requested, unless `partial` is set.
 nlohmann::ordered_json EvaluateCheckpoint(
     const std::filesystem::path& run, const std::filesystem::path& checkpoint,
     const CheckpointEvaluation& evaluation,

@@ -15,9 +15,9 @@ namespace shoal::actor {
 
 struct EvaluationEnvironments {
   EnvironmentFactory make;
-  // The run with another task to play. Throws Error when the policy does not fit it.
+  // The run with another task to play. Throws Error if the policy does not fit that task.
   std::function<RunConfig(const RunConfig&, const std::string& task)> with_task;
-  // The larger view of films. Called once the one environment of the evaluation is made.
+  // Makes the larger view of films. Called after the evaluation's only environment has been made.
   std::function<std::unique_ptr<EpisodeView>(const RunConfig&, const FrameRecorder::Options&)> view;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why an episode failed, told from what its records hold: where the object was, where it should be.
+// Cause of an episode's failure, computed from the achieved and desired goals in its records.
 //
 //   p_0, p_t, p_T   achieved goal at the start, after step t, at the end      g   desired goal
 //   d_t = |p_t - g|                                                           D   task's threshold
@@ -18,9 +18,9 @@
 //     passed_the_goal     along exceeds |g - p_0| by D or more
 //     reached_then_left   some d_t < D
 //     moved_away          d_T >= d_0
-//     beside_the_goal     p_T is farther from the line from p_0 to g than it lacks along it
+//     beside_the_goal     the distance of p_T from the line p_0 g exceeds |g - p_0| - along
 //     stopped_short       else
-//   without
+//   without an object
 //     reached_then_left, moved_away, stopped_short
 #pragma once
 
@@ -49,17 +49,17 @@ enum class FailureCause {
   kStoppedShort,
 };
 
-// "left_the_table", as files have it.
+// Name of a cause in files: "left_the_table".
 std::string_view NameOf(FailureCause cause);
 
 // Facts about one episode, collected observation by observation. One thread.
 class FailureFacts {
  public:
-  // Tasks with goals of up to three numbers in m; `applies()` is false for others.
+  // Supports tasks with goals of up to three numbers in m; `applies()` is false for other tasks.
   FailureFacts(const ObservationSpec& spec, const tasks::Task& task);
 
   bool applies() const { return applies_; }
-  // The causes that an episode of the task can have, in the order in which they are asked.
+  // The causes that an episode of the task can have, in the order in which they are tested.
   std::span<const FailureCause> causes() const;
 
   // `vector` (R): every block, as Environment writes it.
@@ -68,12 +68,12 @@ class FailureFacts {
   // The desired and the achieved goal, in m: as many numbers as the goal has.
   std::vector<double> desired() const { return Numbers(goal_); }
   std::vector<double> achieved() const { return Numbers(now_); }
-  // The cause for an episode that has ended without success and without a fault. CHECK: applies,
-  // begun.
+  // The cause of an episode that has ended without success and without a fault. CHECK: `applies()`,
+  // and Begin was called.
   FailureCause Cause() const;
 
  private:
-  using Point = std::array<double, 3>;  // goals of fewer numbers: zeros behind
+  using Point = std::array<double, 3>;  // goals of fewer numbers are padded with zeros
 
   Point Read(std::span<const float> vector, const ObservationSpec::Range& block) const;
   std::vector<double> Numbers(const Point& point) const;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records what the policy of one episode runner sees and does, and a larger view of it, into a
-// stream of frames (common/image/frame_stream.h): for films.
+// Recorder for films. Writes the observations and actions of one episode runner's policy, and a
+// larger view of the scene, to a stream of frames (common/image/frame_stream.h).
 #pragma once
 
 #include <cstdint>
@@ -21,22 +21,21 @@ class FrameRecorder final : public EpisodeListener {
  public:
   struct Options {
     std::filesystem::path file;
-    // Camera of the view; empty = the task's for films, else the run's first, else the task's
-    // first.
+    // Camera of the view. Empty = the task's camera for films; if it has none, the run's first
+    // camera; if the run has none, the task's first.
     std::string camera = "";
     int height = 480, width = 480;  // of the view
-    // fast | native | reference. Empty = native for runs in quality native, which then need no
-    // OSMesa; else reference.
+    // fast | native | reference. Empty = native for runs in quality native, so that these need no
+    // OSMesa; reference for other runs.
     std::string quality = "";
   };
-  // `spec`: of what the policy observes. Throws Error on a file that cannot be written.
+  // `spec`: observation spec of the policy. Throws Error if the file cannot be written.
   FrameRecorder(const ObservationSpec& spec, const std::filesystem::path& file,
                 std::unique_ptr<EpisodeView> view);
 
   void OnBegin(uint64_t stream_key, std::span<const uint8_t> stack) override;
   void OnStep(const SeenStep& step) override;
-  // Shows the last picture once more, as the episode's end: films show as many episodes as were
-  // played.
+  // Repeats the last picture as the end of the episode, so films show all played episodes.
   void OnFault(std::span<const uint8_t> stack) override;
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The larger view of a user's environment: what its own render draws, as large as fits into the
-// view, with black bars where the sides have another ratio.
+// The larger view of a user's environment. Shows the picture of the environment's `render`, scaled
+// to fit into the view; black bars fill the rest.
 #pragma once
 
 #include <optional>
@@ -14,19 +14,19 @@ namespace shoal::actor {
 
 class HostedView final : public EpisodeView {
  public:
-  // Borrows the environment that the policy plays in. Height and width are the view's.
+  // Borrows the policy's environment. `height` and `width`: size of the view.
   HostedView(hosted::RawEnvironment& environment, int height, int width)
       : environment_(environment), height_(height), width_(width) {}
 
   int height() const override { return height_; }
   int width() const override { return width_; }
   uint32_t step_microseconds() const override { return 0; }
-  // Throw Error on a picture of another size than the first one.
+  // Begin and Step throw Error if a picture has another size than the first one.
   void Begin(uint64_t stream_key, std::span<uint8_t> picture) override;
   void Step(std::span<const float> action, float reward, std::span<uint8_t> picture) override;
 
  private:
-  // How pictures of one size are brought into the view.
+  // Scales pictures of one size to the view.
   struct Fit {
     int from_height, from_width, height, width;
     hosted::ImageResize resize;
@@ -38,7 +38,7 @@ class HostedView final : public EpisodeView {
 
   hosted::RawEnvironment& environment_;
   const int height_, width_;
-  std::optional<Fit> fit_;  // once a picture has been drawn
+  std::optional<Fit> fit_;  // set when the first picture is drawn
 };
 
 }  // namespace shoal::actor

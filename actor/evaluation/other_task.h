@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A policy on a task that it was not trained for, as from one simulation to another.
+// Evaluation of a policy on another task than the one it was trained on, for example sim-to-sim
+// transfer.
 #pragma once
 
 #include <string>
@@ -8,10 +9,9 @@
 
 namespace shoal::actor {
 
-// The run's configuration with another task in place of its own: that task as it is, without the
-// randomization and without the model file of the run. The spec is the new task's. Throws Error
-// naming both sides when its observations or actions are not of the sizes that the run's policy
-// takes.
+// The run's configuration with another task in place of its own. The run's randomization and model
+// file are not applied to the new task. The spec is the new task's. Throws Error naming both sizes
+// if the new task's observations or actions do not have the sizes of the run's policy.
 RunConfig WithTask(const RunConfig& run, const std::string& task);
 
 }  // namespace shoal::actor

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Baselines: results of uniform random actions and of no-op actions, which a policy must beat.
+// Baselines for a policy: results of uniform random actions and of no-op actions.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace shoal::actor {
 
 struct RandomRequest {
   std::string task;
-  std::string model = "";  // path of another MJCF file; empty = our own
+  std::string model = "";  // path of another MJCF file; empty = the built-in model
   int episodes = 100;
   int64_t seed = 1;
   std::string policy = "random";  // or "noop": every action is zero
@@ -21,14 +21,14 @@ struct RandomRequest {
   bool end_on_success = false;
 };
 
-// Whole episodes of the final stream, as `shoal eval` plays them. Schema shoal-eval-1 with policy
-// "random" or "noop", and success_by_threshold: [{threshold (m), success_rate}] over the distances
-// at the episodes' ends, for judging whether a threshold says anything; null for tasks without
-// goals. Throws Error (kUsage) on an unknown task or policy, listing those there are, and when
-// `stop`, asked after each step, says so.
+// Plays whole episodes of the final stream, like `shoal eval`. Schema shoal-eval-1 with policy
+// "random" or "noop", and success_by_threshold: [{threshold (m), success_rate}], computed from the
+// final distances; null for tasks without goals. The rates show whether a threshold is too easy.
+// Throws Error (kUsage) on an unknown task or policy, listing the known ones, and if `stop`, called
+// after each step, returns true.
 nlohmann::ordered_json PlayRandom(const RandomRequest& request, const std::function<bool()>& stop);
 
-// For people: means over the episodes, then the success rate by threshold.
+// The result as text: means over the episodes, then the success rate by threshold.
 std::string RandomText(const nlohmann::ordered_json& result);
 
 }  // namespace shoal::actor

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The larger view of one of Shoal's worlds. An environment of its own plays the same episodes by
-// the same actions: equal stream keys and actions give equal physics, so the policy's environment
-// needs no knowledge of the view. The view shows the goal's marker, whether or not the policy's
-// pictures do.
+// The larger view of one of Shoal's worlds. The view has a separate environment, which plays the
+// same episodes with the same actions: equal stream keys and actions give equal physics. The
+// policy's environment is therefore independent of the view. The view shows the goal's marker even
+// if the policy's pictures do not.
 #pragma once
 
 #include <memory>
@@ -13,8 +13,8 @@
 
 namespace shoal::actor {
 
-// Its Begin and Step CHECK that both environments earn the same. Throws Error (kUsage) on a camera
-// that the task does not have.
+// Makes the view. Its Step CHECKs that both environments earn the same reward. Throws Error
+// (kUsage) if the task does not have the camera.
 std::unique_ptr<EpisodeView> MakeWorldView(const RunConfig& run,
                                            const FrameRecorder::Options& options);
 

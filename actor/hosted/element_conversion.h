@@ -9,7 +9,7 @@
 
 namespace shoal::hosted {
 
-// `array` has as many elements of `type` as `numbers`.
+// Converts `array` to `numbers`. `array` has numbers.size() elements of `type`.
 void ConvertTo(tasks::ElementType type, const void* array, std::span<float> numbers);
 std::vector<float> ToFloats(tasks::ElementType type, const void* array, size_t count);
 

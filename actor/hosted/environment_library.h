@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Environments in C++ that need no engine of Shoal's, from shared objects: docs/own_environment.md.
+// User environments in C++, loaded from shared objects: docs/own_environment.md.
 //
 //   extern "C" void ShoalRegisterEnvironments();   calls AddEnvironment for each environment
 //
-// A library uses Shoal's functions as the program that loads it has them, and must be built from
-// headers of the same version with the same compiler. Only the actors load it.
+// A library uses the Shoal functions of the program that loads it, so it must be built with the
+// same compiler and with headers of the same version. Only actors load libraries.
 #pragma once
 
 #include <memory>
@@ -15,25 +15,26 @@
 
 namespace shoal::hosted {
 
-// An environment of a library: what it observes, and how it moves.
+// An environment of a library.
 class OwnEnvironment : public RawEnvironment {
  public:
-  // Its spaces. `id` and `task` are filled in by the caller. `goal` states the reward, which
-  // `shoal env check` and each start of a run compare with the rewards of an episode.
+  // Describes the environment's spaces. The caller fills in `id` and `task`. `goal` states the
+  // reward; `shoal env check` and each start of a run compare it with the rewards of an episode.
   virtual tasks::EnvironmentDescription Describe() const = 0;
-  // Throws Error: an environment without pictures.
+  // By default throws Error: the environment has no pictures.
   RawPicture Render() override;
 };
 
 // `kwargs`: env.kwargs, the JSON text of an object; "{}" if the user gives none.
 using EnvironmentMaker = std::unique_ptr<OwnEnvironment> (*)(const std::string& kwargs);
 
-// Adds an environment; `shoal train --env LIBRARY.so:NAME` names it. At the start of a program,
-// before threads. Throws Error (kUsage) when there is another one of that name.
+// Registers an environment for `shoal train --env LIBRARY.so:NAME`. Call it at the start of a
+// program, before threads start. Throws Error (kUsage) if the name is already registered.
 void AddEnvironment(const std::string& name, EnvironmentMaker maker);
 
-// The environment that `id` names: "/home/me/catch_light.so:CatchLight". Loads the library unless
-// it is loaded. Throws Error (kUsage) naming what is missing, and those of the library.
+// Makes the environment that `id` names: "/home/me/catch_light.so:CatchLight". Loads the library
+// unless it is already loaded. Throws Error (kUsage) naming the missing file or environment, and
+// the environments of the library.
 std::unique_ptr<OwnEnvironment> MakeOwnEnvironment(const std::string& id,
                                                    const std::string& kwargs);
 

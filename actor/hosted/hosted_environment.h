@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes an Environment of a user's environment: maps actions from [-1, 1] to its bounds
-// (action_mapping.h), images to frames, other arrays to blocks (observation_mapping.h), and refuses
-// numbers that are not finite.
+// Adapter from a user's environment to Environment. Maps actions from [-1, 1] to the environment's
+// bounds (action_mapping.h), images to frames and other arrays to blocks (observation_mapping.h).
+// Reports numbers that are not finite.
 #pragma once
 
 #include <cstdint>
@@ -21,18 +21,19 @@ namespace shoal::hosted {
 
 class HostedEnvironment final : public worlds::Environment {
  public:
-  // `raw` observes what `description` says. Throws Error (kUsage): hosted_spec.h.
+  // `raw` has the spaces of `description`. Throws Error (kUsage), as SpecOf (hosted_spec.h) does.
   HostedEnvironment(tasks::EnvironmentDescription description, const Config& config,
                     std::unique_ptr<RawEnvironment> raw);
 
   const ObservationSpec& spec() const override { return spec_; }
-  // A number of an observation or a reward that is not finite is an EpisodeFault. Numbers outside
-  // of their declared bounds pass, with a warning for the first of each array.
+  // Reset and Step throw EpisodeFault if a number of an observation or a reward is not finite.
+  // Numbers outside their declared bounds are accepted; the first of each array is logged as a
+  // warning.
   float Reset(uint64_t stream_key, worlds::ObservationOut out) override;
   worlds::StepResult Step(std::span<const float> action, worlds::ObservationOut out) override;
-  // The user's code draws what it observes within its step.
+  // 0: the user's code renders its images within its step.
   double render_seconds() const override { return 0; }
-  // Reset and step of the user's code.
+  // Seconds in reset and step of the user's code.
   std::optional<double> user_seconds() const override {
     return call_seconds_ - raw_->binding_seconds();
   }
@@ -42,9 +43,9 @@ class HostedEnvironment final : public worlds::Environment {
 
  private:
   void Observe(worlds::ObservationOut out);
-  // A control step of `action_`.
+  // Makes a control step with `action_`.
   RawStep TimedStep();
-  // NaN without goals.
+  // Distance of the achieved to the desired goal; NaN for environments without goals.
   double Distance() const;
 
   const tasks::EnvironmentDescription description_;
@@ -56,7 +57,7 @@ class HostedEnvironment final : public worlds::Environment {
   ObservationMapping mapping_;
   std::vector<float> vector_;   // (R), of the newest observation
   std::vector<double> action_;  // (A), in the environment's units
-  double call_seconds_ = 0;     // in Reset and Step of `raw_`
+  double call_seconds_ = 0;     // spent in Reset and Step of `raw_`
   int64_t steps_ = 0;           // control steps since the reset
 };
 

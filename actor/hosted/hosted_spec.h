@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// From an environment's description and a run's configuration to the run's observation spec. Pure:
-// the coordinator computes it before anything is started, and each actor again from the environment
-// that it has, so that an environment whose spaces differ between processes is refused by hash.
+// Computes the run's observation spec from an environment's description and the run's
+// configuration. The functions are pure. The coordinator computes the spec before it starts
+// processes, and each actor computes it again from its own environment. If the spaces differ
+// between processes, the hashes of the specs differ and the environment is refused.
 #pragma once
 
 #include <string>
@@ -16,10 +17,10 @@ namespace shoal::hosted {
 // Names of the arrays that are images, in the description's order: the cameras of the environment.
 std::vector<std::string> ImagesOf(const tasks::EnvironmentDescription& environment);
 
-// Images become frames through observation.cameras, which must name images of the environment, or,
-// if it is the default, all of them. Other arrays become blocks; without pixels the policy sees all
-// of them, otherwise those of observation.proprioception. Throws Error (kUsage) naming the key or
-// the array: pixels without images, images of different kinds, keys that belong to Shoal's worlds.
+// The images that observation.cameras names become frames; with its default value, all images do.
+// Other arrays become blocks. Without pixels the policy sees all blocks, otherwise the blocks of
+// observation.proprioception. Throws Error (kUsage) naming the key or the array: pixels without
+// images, images of different kinds, keys that only apply to Shoal's worlds.
 ObservationSpec SpecOf(const tasks::EnvironmentDescription& environment, const Config& config);
 
 }  // namespace shoal::hosted

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images of an environment's own, brought to the layout and size of a frame.
+// Converts images of a user's environment to the layout and size of a frame.
 //
 //   out[c, i, j] = round( sum over (y, x) of area(y, x; i, j) * in[y, x, c] / (H W) * (h w) )
 //
-// where area is that of pixel (y, x) which output pixel (i, j) covers, if both images are laid over
-// each other. So a smaller image is the average over areas, and a larger one repeats pixels. Sums
-// are exact in integers: the same bits on every CPU.
+// where area(y, x; i, j) is the overlap of pixel (y, x) and output pixel (i, j) when both images
+// cover the same rectangle. A smaller output averages over areas; a larger output repeats pixels.
+// The sums are exact integers, so all CPUs give the same bits.
 //
-// Shapes: in as its layout says, H x W pixels; out (C, h, w), row 0 = top. Threads: each object is
-// used by one.
+// Shapes: `in` has H x W pixels in its declared layout; `out` is (C, h, w), row 0 = top. One thread
+// per object.
 #pragma once
 
 #include <cstdint>
@@ -21,23 +21,23 @@ namespace shoal::hosted {
 
 class ImageResize {
  public:
-  // `grey`: RGB becomes one channel, luma of ITU-R BT.601 as in frames of Shoal's worlds. Throws
-  // Error (kUsage) on an image beyond 16 million pixels, where sums would overflow.
+  // `grey`: RGB becomes one channel, the luma of ITU-R BT.601, like in frames of Shoal's worlds.
+  // Throws Error (kUsage) if the image has more than 16 million pixels: the sums would overflow.
   ImageResize(const tasks::ImageLayout& layout, bool grey, int height, int width);
 
   int channels() const { return channels_; }
-  // CHECK on a frame of another size than channels() * height * width.
+  // Writes the converted image to `frame`. CHECK: frame has channels() * height * width bytes.
   void Apply(const uint8_t* image, std::span<uint8_t> frame);
 
  private:
-  // Source pixels first .. first + weights.size() - 1 with their share of one output pixel; the
-  // weights of one output pixel add up to the source's side.
+  // Source pixels first .. first + weights.size() - 1 with their weights in one output pixel. The
+  // weights of one output pixel add up to the side of the source image.
   struct Span {
     int first = 0;
     std::vector<uint32_t> weights;
   };
   static std::vector<Span> Spans(int from, int to);
-  // Plane `channel` of the image, H x W.
+  // Copies plane `channel` of the image, (H, W).
   void TakePlane(const uint8_t* image, int channel);
   void TakeGrey(const uint8_t* image);
   void Shrink(std::span<uint8_t> plane);

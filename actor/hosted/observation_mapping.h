@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arrays of a user's environment as a record's frame and vector: images become frames, other arrays
-// blocks. Actors and policies outside of training use the same conversion.
+// Converts arrays of a user's environment to a record's frame and vector: images become frames,
+// other arrays become blocks. Actors and deployed policies use the same conversion.
 #pragma once
 
 #include <cstdint>
@@ -16,16 +16,17 @@ namespace shoal::hosted {
 
 class ObservationMapping {
  public:
-  // `spec` follows from `description` (hosted_spec.h). CHECK: it names no other arrays.
+  // `spec` was computed from `description` (hosted_spec.h). CHECK: `spec` names only arrays of
+  // `description`.
   ObservationMapping(const tasks::EnvironmentDescription& description, const ObservationSpec& spec);
 
-  // `arrays` has the arrays of an observation in the description's order, each contiguous in C
-  // order; arrays that neither a camera nor a block names are not read. `steps`, since the
-  // episode's start, is for messages.
+  // Writes every block to `vector` (R). `arrays`: the arrays of an observation in the description's
+  // order, each contiguous in C order. Arrays that neither a camera nor a block names are not read.
+  // `steps`: steps since the episode's start, for messages.
   //
-  // Writes every block to `vector` (R). A number that is not finite is an EpisodeFault, and a part
-  // of `vector` may be written then. Numbers outside of their declared bounds pass, with a warning
-  // for the first of each array.
+  // Throws EpisodeFault if a number is not finite; a part of `vector` may then have been written.
+  // Numbers outside their declared bounds are accepted; the first of each array is logged as a
+  // warning.
   void ReadVector(std::span<const void* const> arrays, int64_t steps, std::span<float> vector);
   // Writes the images of all cameras to `frame` (C, H, W).
   void ReadFrame(std::span<const void* const> arrays, std::span<uint8_t> frame);
@@ -34,12 +35,12 @@ class ObservationMapping {
 
  private:
   struct Image {
-    size_t array = 0;  // of the observation
+    size_t array = 0;  // index in the observation
     ImageResize resize;
   };
   struct Block {
-    size_t array = 0;  // of the observation
-    size_t first = 0;  // of the vector
+    size_t array = 0;  // index in the observation
+    size_t first = 0;  // index in the vector
     tasks::ArraySpace space;
     bool bounded = false, warned = false;
   };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A user's environment, tried before a run uses it: does it keep to what it says, and do equal
-// seeds give equal episodes?
+// Test of a user's environment before a run uses it. Checks that the environment conforms to its
+// description and that equal seeds give equal episodes.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +13,16 @@
 namespace shoal::hosted {
 
 struct Trial {
-  int steps = 0;                    // that were played
-  double step_microseconds = 0;     // duration of one
-  bool success = false;             // a step said whether it succeeds
-  int repeated_steps = 0;           // that were played again with the same seed and actions
-  std::optional<int> differs_at{};  // the first that was another the second time; 0 = the reset
-  std::string other_reward{};  // why the description's goal does not give the rewards; or empty
+  int steps = 0;                    // steps played
+  double step_microseconds = 0;     // duration of one step
+  bool success = false;             // the environment reports success
+  int repeated_steps = 0;           // steps repeated with the same seed and actions
+  std::optional<int> differs_at{};  // first repeated step that differs; 0 = the reset
+  std::string other_reward{};  // why the rewards contradict the description's goal; empty = none
 };
 
-// Plays random actions until an episode ends or two seconds are over, and its beginning again.
-// Throws what the environment throws.
+// Plays random actions until an episode ends or two seconds have passed, then repeats the beginning
+// of the episode. Throws the environment's errors.
 Trial TryEnvironment(RawEnvironment& environment, const tasks::EnvironmentDescription& description,
                      uint64_t seed);
 

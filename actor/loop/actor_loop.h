@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The training actor's loop: steps its rollout at the pace it is given, exchanges records and
-// credits, takes weights, reports; and at the end has everything stored.
+// The training actor's loop: steps its rollout at the given pace, exchanges records and credits,
+// takes weights and reports. At the end it waits until all records are stored.
 //
-// Everything outside the process is behind a seam: records and credits (ChunkLink, in the sender),
-// weights (WeightsSource), the run's state and signals (RunControl), the clock. No DDS here.
+// Interfaces separate the loop from everything outside the process: records and credits (ChunkLink,
+// in the sender), weights (WeightsSource), the run's state and signals (RunControl), the clock. The
+// loop does not depend on DDS.
 #pragma once
 
 #include <chrono>
@@ -23,11 +24,11 @@ namespace shoal::actor {
 // Borrows its parts. One thread.
 class ActorLoop {
  public:
-  // For the last records to be stored. When the coordinator and with it the learner is gone, the
-  // limiter may hold them back until the replay has noticed, too.
+  // Time allowed for storing the last records. If the coordinator and the learner are gone, the
+  // limiter may withhold credits until the replay has also detected the loss.
   static constexpr std::chrono::seconds kDrainDeadline =
       ControlState::kLease + std::chrono::seconds(10);
-  // Per look for a credit while there is nothing else to do.
+  // Longest wait for a credit while the loop has nothing else to do.
   static constexpr std::chrono::milliseconds kBlockedWait{5};
 
   struct Parts {
@@ -43,18 +44,18 @@ class ActorLoop {
 
   enum class End {
     kAllStored,        // the run ended or a signal came; every record made is stored
-    kUnstored,         // the same, but records are left that were not reported stored
-    kCoordinatorLost,  // whatever became of the records
+    kUnstored,         // the same, but some records were not acknowledged
+    kCoordinatorLost,  // the records may or may not be stored
   };
-  // Told of the loop's state ("running", "blocked", "draining", "stopping") several times a second;
-  // `last` is the final time.
+  // Receives the loop's state ("running", "blocked", "draining", "stopping") several times a
+  // second. `last` marks the final call.
   using Progress = std::function<void(const char* state, bool last)>;
 
-  // Until the run ends, a signal comes or the coordinator is lost. Throws Error when weights that
-  // the pace awaits do not come in time, or as the parts do.
+  // Runs until the run ends, a signal arrives or the coordinator is lost. Throws Error if weights
+  // that the pace awaits do not arrive in time, and the errors of the parts.
   End Run(const Progress& progress);
 
-  // Spent without room for records; spent awaiting and loading weights.
+  // Time spent without room for records; time spent awaiting and loading weights.
   double blocked_seconds() const { return blocked_seconds_; }
   double weights_seconds() const { return weights_seconds_; }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A training actor's 1 Hz report (docs/monitoring.md): what it did and what it waited for.
+// A training actor's 1 Hz report (docs/monitoring.md): its work and its waiting times.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace shoal::actor {
 
-// Borrows what it reports of. One thread.
+// Borrows its parts. One thread.
 class ActorReport {
  public:
   struct Parts {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The training actor's seams over the link and this thread group's signals: each is an inbox, the
-// reader that fills it and what is written beside it. Destruction ends the receive threads'
-// callbacks before the inboxes they write to.
+// Implementations of the training actor's interfaces over the link and the process's signals. Each
+// consists of an inbox, the reader that fills the inbox, and a writer if the interface sends.
+// Destruction ends the receive threads' callbacks before it destroys the inboxes.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@
 
 namespace shoal::actor {
 
-// Borrow the hub. Their methods are one thread's.
+// Borrows the hub. One thread calls the methods.
 class HubChunkLink final : public ChunkLink {
  public:
   HubChunkLink(link::Hub& hub, uint32_t actor, uint64_t session)
@@ -27,7 +27,7 @@ class HubChunkLink final : public ChunkLink {
         subscriber_(hub, [this](const CreditsMessage& m) { inbox_.OnMessage(m); }) {}
 
   std::optional<Credit> TakeCredit(SteadyTime deadline) override { return inbox_.Take(deadline); }
-  // Without a matched reader a volatile writer's samples vanish.
+  // The writer is volatile: samples written without a matched reader are lost.
   bool Connected() override { return publisher_.Matched() > 0; }
   bool Send(const TransitionChunk& chunk) override { return publisher_.Write(chunk); }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// When an actor may step: the turns that its loop takes between vector steps (one step of each of
-// its environments) and weights versions.
+// Pace of an actor: decides whether the loop makes the next vector step (one step of each of its
+// environments) or first waits for a weights version.
 #pragma once
 
 #include <chrono>
@@ -16,14 +16,14 @@ namespace shoal::actor {
 class Pace {
  public:
   enum class Turn {
-    kStep,          // step
-    kAwaitWeights,  // have everything stored and take weights as they come; then ask again
-    kRest,          // step no more: have everything stored until the run ends
+    kStep,          // make a vector step
+    kAwaitWeights,  // store all records and take weights as they arrive; then call Next again
+    kRest,          // make no further steps; store all records and wait for the end of the run
   };
 
   virtual ~Pace() = default;
-  // The actor's next turn after `vector_steps` since the run's start, if it acts by `version`. Call
-  // it before every vector step.
+  // The actor's next turn. `vector_steps`: made since the run's start; `version`: of the actor's
+  // present weights. Call Next before every vector step.
   virtual Turn Next(int64_t vector_steps, const WeightsVersion& version) = 0;
   // True if the loop also takes weights between steps, as they arrive; false if only when awaited.
   virtual bool TakesWeightsAnytime() const = 0;
@@ -42,17 +42,17 @@ class FreePace final : public Pace {
  public:
   Turn Next(int64_t, const WeightsVersion&) override { return Turn::kStep; }
   bool TakesWeightsAnytime() const override { return true; }
-  std::string Awaited() const override { return {}; }  // it awaits none
+  std::string Awaited() const override { return {}; }  // awaits no weights
 };
 
-// Alternates with the learner (common/config/lockstep.h). At the end of each phase it waits for the
-// weights of that phase's last update; clocks have no influence. It rests once a phase has reached
-// the budget.
+// Alternates with the learner (common/config/lockstep.h). At the end of each phase the actor waits
+// for the weights of the last update of the phase; clocks have no influence. The actor rests once a
+// phase has reached the budget.
 class LockstepPace final : public Pace {
  public:
-  // `vector_steps`: those that the restored state contains; 0 for a new actor. In the middle of a
-  // phase the state was made with the weights of the phase before. The learner offers these first
-  // when it resumes.
+  // `vector_steps`: number in the restored state; 0 for a new actor. In the middle of a phase the
+  // state was made with the weights of the phase before. A resumed learner sends these weights
+  // first.
   LockstepPace(const Config& config, int64_t vector_steps);
 
   Turn Next(int64_t vector_steps, const WeightsVersion& version) override;
@@ -62,14 +62,14 @@ class LockstepPace final : public Pace {
 
  private:
   const Config config_;
-  int64_t phase_ = 0;    // being played
+  int64_t phase_ = 0;    // the phase that is being played
   uint64_t update_ = 0;  // lowest update of the weights that play the phase
 };
 
-// The pace of on-policy learning, where each rollout makes one update. Plays each rollout of
-// `vector_steps` with one version of the weights. Before the next rollout it waits for the version
-// that follows; with `ahead` = 1, for the version before that one. The version also shows where a
-// learner is that was restarted, or that continued without this actor.
+// The pace of on-policy learning, where each rollout gives one update. Plays each rollout of
+// `vector_steps` with one version of the weights. Before the next rollout the actor waits for the
+// next version; with `ahead` = 1, for the version before the next one. The version also shows the
+// progress of a learner that was restarted, or that continued without this actor.
 class VersionPace final : public Pace {
  public:
   explicit VersionPace(int64_t vector_steps, int ahead = 0);
@@ -89,7 +89,7 @@ class VersionPace final : public Pace {
   uint64_t next_update_ = 0;  // of the weights that will play the next rollout
 };
 
-// The pace that the configuration selects, for an actor that has done `vector_steps` already.
+// The pace that the configuration selects. `vector_steps`: number that the actor has already made.
 std::unique_ptr<Pace> MakePace(const Config& config, int64_t vector_steps);
 
 }  // namespace shoal::actor

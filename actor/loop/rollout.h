@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// E environments stepped together: reset, act, step, and one record each time.
+// Rollout of E environments that are stepped together. Each reset and each step gives one record.
 //
-// Resets take longer than steps, and all environments wait for one. Where all of them begin an
-// episode in the same step, as at the start, those episodes are cut short so that they end at
-// different steps, and so do those that follow:
+// Resets take longer than steps, and all environments wait for each reset. If all environments
+// begin an episode in the same step, as at the start, these episodes are cut short, so that they
+// and later episodes end at different steps:
 //
-//   environment e of E truncates it after ceil(L (e + 1) / E) of the L env steps of a whole one.
+//   environment e of E truncates its episode after ceil(L (e + 1) / E) env steps; a whole episode
+//   has L env steps.
 //
-// A faulty episode (actor/worlds/episode_fault.h) ends at its last finite observation. The step
-// that failed is not recorded; its environment begins another episode and steps in that, so that
-// every vector step still has one step record of each environment: budget, lockstep and rollouts on
-// policy count as without. The replay sees the next episode begin and closes the faulty one there.
+// A faulty episode (actor/worlds/episode_fault.h) ends at its last finite observation. The failed
+// step is not recorded. Its environment begins another episode and makes a step there, so every
+// vector step still has one step record of each environment, and budgets, lockstep and on-policy
+// rollouts count the same steps as without faults. The replay closes the faulty episode when the
+// next episode begins.
 //
-// Borrows everything it is built from. One thread.
+// Borrows the constructor's arguments, except the environments. One thread.
 #pragma once
 
 #include <cstdint>
@@ -36,11 +38,11 @@ namespace shoal::actor {
 struct StageSeconds {
   bool users = false;  // the environments are a user's own
   // Stages of Shoal's own worlds.
-  double physics = 0;  // and all else that an environment does but rendering
+  double physics = 0;  // everything that an environment does except rendering
   double rendering = 0;
-  // Stages of environments of a user's own.
-  double user_code = 0;   // their reset and step
-  double conversion = 0;  // between their arrays and Shoal's, and all else
+  // Stages of a user's own environments.
+  double user_code = 0;   // reset and step of the user's code
+  double conversion = 0;  // between the user's arrays and Shoal's, and everything else
   double inference = 0;
 };
 
@@ -48,24 +50,24 @@ class Rollout {
  public:
   struct Options {
     int64_t seed = 0;        // the run's
-    uint32_t first_env = 0;  // number in the run of the first of the environments
-    // This actor's share of exploration.random_steps, and all of them. Whichever of the two is
-    // reached first, the one by its own env steps or the other by the run's, ends the warm-up: so
-    // an actor that was restarted or joined late does not begin anew.
+    uint32_t first_env = 0;  // number of the first environment within the run
+    // This actor's share of exploration.random_steps, and the total. The warm-up ends when the
+    // actor's env steps reach the share or the run's env steps reach the total. An actor that was
+    // restarted or joined late therefore does not repeat the warm-up.
     uint64_t own_random_steps = 0, run_random_steps = 0;
     int episode_steps = 0;        // L
     double max_faulty_share = 0;  // FaultLog
 
     static Options Of(const Config& config, uint32_t first_env);
   };
-  // The environments observe what `spec` says and are as many as the selector chooses for.
+  // The environments have the spec `spec`; their number is that of the selector's environments.
   Rollout(const Options& options, const ObservationSpec& spec,
           std::vector<std::unique_ptr<worlds::Environment>> environments, SequenceLog& made,
           RecordSink& sink, ActionSelector& selector);
 
-  // Steps every environment once; begins an episode where the last one ended. Returns false, and
-  // does nothing, while the sink has no room for the records. It also returns false after a faulty
-  // step: the next call then continues with the environments that still owe a step. Throws Error
+  // Steps every environment once; begins an episode if the last one has ended. Returns false, and
+  // does nothing, while the sink has no room for the records. Also returns false after a faulty
+  // step: the next call then steps the environments that have not yet made their step. Throws Error
   // (kNonFinite) if the share of faulty episodes exceeds max_faulty_share.
   bool TryStep();
 
@@ -75,16 +77,17 @@ class Rollout {
 
   // The present state. The caller fills in `session` and `made`.
   RolloutState State() const;
-  // Continues from another process's state: plays the running episodes again by their actions and
+  // Continues from another process's state: replays the running episodes from their actions and
   // publishes nothing. Call it before the first step. Throws Error if the state was made with other
   // environments.
   void Restore(const RolloutState& state);
 
-  // Steps of this actor: since the run's start if its state was restored, else since its own start.
+  // Steps of this actor: since the run's start if the state was restored, otherwise since the
+  // actor's start.
   uint64_t env_steps() const { return env_steps_; }
   int64_t vector_steps() const { return static_cast<int64_t>(env_steps_ / slots_.size()); }
-  // All ended episodes except those with a cut (CutAfter). Among these only short episodes end
-  // before their cut, so that counting them would bias the figures.
+  // All ended episodes except the episodes with a cut (CutAfter). Among episodes with a cut, only
+  // short ones end before the cut, so including them would bias the figures.
   const EpisodeLog& episodes() const { return episodes_; }
   const FaultLog& faults() const { return faults_; }
   StageSeconds seconds() const;
@@ -97,12 +100,12 @@ class Rollout {
   };
 
   bool WarmingUp() const;
-  // Begins an episode wherever none runs and a step is owed.
+  // Begins an episode in each environment that owes a step and has no running episode.
   void BeginEpisodes();
   void BeginEpisode(int e, int cut_after);
-  // Resets the environment for the first of its next episodes that can begin; `record` gets it.
+  // Resets the environment; skips episodes that cannot begin. Writes the reset to `record`.
   void ResetRunner(int e, int cut_after, uint8_t* record);
-  // Env steps after which the episode is cut that begins in the same step as all others; 0 = no
+  // Env steps after which an episode is cut that begins in the same step as all others; 0 = no
   // cut.
   int CutAfter(int e) const;
   // False: the step was faulty and is not recorded.
@@ -112,7 +115,7 @@ class Rollout {
   // Key of the episode that local environment `e` plays.
   uint64_t StreamKeyOf(StreamRole role, int e) const;
   void FillHeader(int e, RecordKind kind, RecordHeader* header) const;
-  // Publishes the goal's picture, before the episode's reset, which is in `record`.
+  // Publishes the goal's picture before the episode's reset. `record` holds the reset.
   void PublishGoal(int e, uint8_t* record);
   void Publish(uint8_t* record);
 
@@ -126,10 +129,10 @@ class Rollout {
   std::vector<uint8_t> reset_;  // a record, while its episode's goal is published
   EpisodeLog episodes_;
   FaultLog faults_;
-  std::vector<bool> owed_;  // (E) of a vector step under way: who has not stepped; empty between
+  std::vector<bool> owed_;  // (E) environments that still owe a step; empty between vector steps
   double environment_seconds_ = 0, inference_seconds_ = 0;
   uint64_t env_steps_ = 0;
-  bool uniform_ = false;  // the warm-up's actions are being played
+  bool uniform_ = false;  // the warm-up is running
 };
 
 }  // namespace shoal::actor

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// State of an actor in lockstep when its run stopped. A resumed run continues from it bit for bit.
-// It holds the running episodes as lists of actions, which the successor plays again: physics
-// depends on the episode's random stream and the actions alone.
+// State of an actor in lockstep when its run stopped. A resumed run continues from the state bit
+// for bit. The state holds the running episodes as lists of actions, which the next process
+// replays: physics depends only on the episode's random stream and the actions.
 //
-// File RUN/made/actor-ID.rollout, JSON (schema shoal-rollout-3) with a CRC-32 of itself. An actor
-// writes it when it stops in order, and its successor removes it. A killed actor leaves none.
+// File RUN/made/actor-ID.rollout, JSON (schema shoal-rollout-3) with a CRC-32 of its content. An
+// actor writes the file at an orderly stop, and the next process removes it. A killed actor leaves
+// no file.
 #pragma once
 
 #include <cstdint>
@@ -20,15 +21,15 @@ struct EpisodeState {
   uint32_t episode = 0;
   bool running = false;
   int cut_after = 0;              // env steps; 0 = the episode is not cut short
-  bool owes = false;              // of a vector step under way it has not made its step
-  ActionSelector::Noise noise{};  // now
+  bool owes = false;              // has not yet made its step of the current vector step
+  ActionSelector::Noise noise{};  // present state
   std::vector<float> actions;     // (length, A) of the running episode
 
   bool operator==(const EpisodeState&) const = default;
 };
 
 struct RolloutState {
-  uint64_t session = 0;                // goes on: the replay joins records of one session only
+  uint64_t session = 0;                // is kept: the replay joins records of one session only
   uint64_t made = 0;                   // records, all of them stored
   uint64_t env_steps = 0;              // of the actor since the run's start
   std::vector<EpisodeState> episodes;  // per environment
@@ -36,13 +37,13 @@ struct RolloutState {
   bool operator==(const RolloutState&) const = default;
 };
 
-// Throws Error when it cannot be written.
+// Writes the file. Throws Error if the file cannot be written.
 void WriteRolloutState(const std::filesystem::path& run, uint32_t actor, const RolloutState& state);
 
-// The state a predecessor left; none when there is none. Throws Error (usage) naming a damaged
-// file.
+// Reads the state of a previous process; empty if there is no file. Throws Error (usage) naming a
+// damaged file.
 std::optional<RolloutState> ReadRolloutState(const std::filesystem::path& run, uint32_t actor);
-// The same, once: removes the file.
+// Reads the state and removes the file.
 std::optional<RolloutState> TakeRolloutState(const std::filesystem::path& run, uint32_t actor);
 
 }  // namespace shoal::actor

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A training actor: steps environments, publishes their records on credit, takes the newest weights
-// between steps. The parts of the loop (actor_loop.h), put together.
+// A training actor: steps environments, publishes their records within its credit, and takes the
+// newest weights between steps. Owns the parts of the loop (actor_loop.h).
 #pragma once
 
 #include <cstdint>
@@ -31,24 +31,24 @@ namespace shoal::actor {
 // Members are in construction order; destruction is the reverse.
 class TrainingActor {
  public:
-  // Actor `id` of the run in `folder`; waits for a former process of that id to end. `make`: the
-  // task's environments; tests of the transport bring cheaper ones. One thread constructs and runs
-  // it. Borrows the hub. Throws Error.
+  // Actor `id` of the run in `folder`. Waits until an earlier process of the same id has ended.
+  // `make` makes the task's environments; tests of the transport use cheaper ones. The same thread
+  // constructs the actor and calls Run. Borrows the hub. Throws Error.
   TrainingActor(const std::filesystem::path& folder, uint32_t id, link::Hub& hub,
                 const EnvironmentFactory& make = MakeEnvironments);
 
-  // Until the coordinator ends the run or a stop is requested: 0 when everything made was reported
-  // stored, 1 when the coordinator vanished or records were left, kUnwrittenExit when the state of
-  // a run in lockstep could not be written. Throws Error.
+  // Runs until the coordinator ends the run or a stop is requested. Returns 0 if all records were
+  // acknowledged, 1 if the coordinator was lost or records were not acknowledged, kUnwrittenExit if
+  // the state of a run in lockstep could not be written. Throws Error.
   int Run();
 
  private:
   ActorLoop::End RunLoop(ActorLoop& loop, ActorReport& report);
 
-  // In lockstep: goes on exactly where the process before it left.
+  // Lockstep: continues exactly from the state of the previous process.
   void Restore();
 
-  // In lockstep: for the process that goes on. False when it could not be written.
+  // Lockstep: writes the state for the next process. False if the state could not be written.
   bool Leave();
 
   const RunConfig run_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One process per actor of a run: its number names its environments, and two that hosted the same
-// would play the same episodes.
+// Lock that allows one process per actor of a run. An actor's number determines its environments,
+// so two processes with the same number would play the same episodes.
 #pragma once
 
 #include <chrono>
@@ -16,8 +16,8 @@ namespace shoal::actor {
 // Holds RUN/made/actor-ID.lock until destruction or the process's death.
 class ActorLock {
  public:
-  // Waits up to `deadline` for a predecessor that is still sending its last records, unless `stop`.
-  // Throws Error naming the lock when it is not had.
+  // Takes the lock. If a predecessor is still sending its last records, waits up to `deadline`, or
+  // until `stop` returns true. Throws Error naming the lock if the lock stays taken.
   ActorLock(const std::filesystem::path& run, uint32_t actor, std::chrono::seconds deadline,
             const std::function<bool()>& stop);
 

@@ -12,11 +12,12 @@ namespace shoal::actor {
 class ChunkLink {
  public:
   virtual ~ChunkLink() = default;
-  // The newest credit of this session that was not taken before; waits for one until `deadline`.
+  // Returns the newest credit of this session, each credit once. Waits for a credit until
+  // `deadline`.
   virtual std::optional<Credit> TakeCredit(SteadyTime deadline) = 0;
-  // Whether a receiver is connected: without one, chunks that are sent now are lost.
+  // True if a receiver is connected. Without a receiver, chunks that are sent now are lost.
   virtual bool Connected() = 0;
-  // False when the transport did not take the chunk in its time: try again later.
+  // Sends a chunk. False if the transport did not accept the chunk in time; try again later.
   virtual bool Send(const TransitionChunk& chunk) = 0;
 };
 

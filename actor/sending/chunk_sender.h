@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sends the chunks of a window over a link: receives credits, closes partial chunks in time, sends
-// chunks that have credit, and resends chunks that were not reported stored for too long.
+// chunks that have credit, and resends chunks that have not been acknowledged for too long.
 #pragma once
 
 #include <chrono>
@@ -15,11 +15,12 @@
 
 namespace shoal::actor {
 
-// Another process has this actor's number and began later, so its session supersedes this one.
+// Another process with this actor's number started later. The session of that process supersedes
+// this one.
 class SupersededError : public Error {
  public:
   SupersededError(uint32_t actor, uint64_t session);
-  uint64_t session() const { return session_; }  // its
+  uint64_t session() const { return session_; }  // of the other process
 
  private:
   uint64_t session_;
@@ -28,21 +29,21 @@ class SupersededError : public Error {
 // Borrows window and link. One thread.
 class ChunkSender {
  public:
-  // If for longer than this no sent chunk is acknowledged, or no credit arrives, everything is
-  // resent. Every credit is repeated once a second: silence means that the replay does not know
-  // this session, because it does not know the records that its predecessor stored.
+  // If no sent chunk is acknowledged, or no credit arrives, for longer than this, everything is
+  // resent. The replay repeats every credit once a second. Silence therefore means that the replay
+  // does not know this session: it does not know the records that an earlier replay process stored.
   static constexpr std::chrono::seconds kResendAfter{2};
 
   struct Options {
     uint64_t spec_hash = 0;
-    std::string spec_summary = {};            // for the refusal of another replay's spec
+    std::string spec_summary = {};            // for the error if the replay has another spec
     std::chrono::milliseconds flush_after{};  // a partial chunk is sent after this long
     std::function<SteadyTime()> now = Now;
   };
   ChunkSender(ChunkWindow& window, ChunkLink& link, const Options& options);
 
-  // Receives credits (waits for them until `deadline`) and sends chunks within them. Throws Error
-  // naming both sides when the replay's observation spec is another one; SupersededError.
+  // Receives credits (waits for them until `deadline`) and sends the chunks that they allow. Throws
+  // Error naming both specs if the replay has another observation spec, and SupersededError.
   void Exchange(SteadyTime deadline);
   // Makes a partial chunk ready to be sent by the next Exchange.
   void Flush() { window_.Flush(); }
@@ -50,7 +51,7 @@ class ChunkSender {
   const ChunkWindow& window() const { return window_; }
   // Chunks that the transport did not accept in time.
   uint64_t write_timeouts() const { return write_timeouts_; }
-  // Time spent in handing chunks to the transport.
+  // Time spent passing chunks to the transport.
   double publish_seconds() const { return publish_seconds_; }
 
  private:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The replay's newest word to this actor session, handed from the DDS receive thread to the loop.
+// The replay's newest credit for this actor session, passed from the DDS receive thread to the
+// loop.
 #pragma once
 
 #include <chrono>
@@ -16,7 +17,7 @@ class CreditInbox {
  public:
   CreditInbox(uint32_t actor, uint64_t session) : actor_(actor), session_(session) {}
 
-  // Receive thread. Words to others are ignored.
+  // Called on the receive thread. Credits for other actors or sessions are ignored.
   void OnMessage(const CreditsMessage& message) {
     for (const Credit& credit : message.credits) {
       if (credit.actor != actor_ || credit.session != session_) continue;
@@ -26,7 +27,7 @@ class CreditInbox {
     }
   }
 
-  // The newest word not taken before; waits for one until `deadline`.
+  // Returns the newest credit, each credit once. Waits for a credit until `deadline`.
   std::optional<Credit> Take(SteadyTime deadline) {
     const MutexLock lock(mutex_);
     while (!newest_ && arrived_.WaitUntil(mutex_, deadline)) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sink of a rollout's records: provides memory for each, in order, as far as the receiver allows.
+// Sink of a rollout's records. Provides memory for one record after another, as many as the
+// receiver allows.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +11,7 @@ namespace shoal::actor {
 class RecordSink {
  public:
   virtual ~RecordSink() = default;
-  // How many records can be begun now: there is memory for them, and the receiver allows them.
+  // Number of records that can be begun now, limited by memory and by the receiver's credit.
   virtual size_t Room() const = 0;
   // Memory for the next record, zeroed, aligned to 8, valid until EndRecord. Room() must not be 0.
   virtual uint8_t* BeginRecord() = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The *made* counter of an actor session and the next unused episode of each of its environments,
-// in a mapped file that survives SIGKILL of the actor (not power loss). Records that it counts as
-// made and that are not stored were lost with the process.
+// Sequence log: the *made* counter of an actor session and the next unused episode of each of its
+// environments. The mapped file survives SIGKILL of the actor, but not power loss. Records that are
+// counted as made and are not stored were lost with the process.
 //
 // File RUN/made/actor-ID-SESSION.page: SequenceLogHeader, then env_count u32 "next episode".
 #pragma once
@@ -17,18 +17,18 @@ struct SequenceLogHeader {
   uint32_t actor;
   uint32_t env_count;
   uint32_t first_env;
-  uint32_t rebuilt;  // 1: by RebuildSequenceLog
+  uint32_t rebuilt;  // 1: written by RebuildSequenceLog
   uint64_t session;
-  uint64_t made;  // records given a sequence
+  uint64_t made;  // number of records that have a sequence
 };
 static_assert(sizeof(SequenceLogHeader) == 40);
 
 // Owns the mapping. One thread.
 class SequenceLog {
  public:
-  // Creates the page of this session, or continues it if the session continues (lockstep). Its
-  // episodes continue the numbers of earlier sessions with the same environments. Throws Error if
-  // the folder cannot be written, and Error (usage) if an older page is broken.
+  // Creates the file of this session, or opens the existing one if the session continues
+  // (lockstep). Episode numbers continue those of earlier sessions with the same environments.
+  // Throws Error if the folder cannot be written, and Error (usage) if an older file is damaged.
   SequenceLog(const std::filesystem::path& run, uint32_t actor, uint64_t session,
               uint32_t first_env, uint32_t env_count);
   ~SequenceLog();
@@ -38,7 +38,8 @@ class SequenceLog {
   // Counts one more record; returns its sequence (from 1).
   uint64_t CountRecord();
   uint64_t made() const { return header_->made; }
-  // Number of the episode that local environment `e` begins now; never used again.
+  // Returns the number of the episode that local environment `e` begins now. Each number is used
+  // once.
   uint32_t TakeEpisode(uint32_t e);
 
  private:
@@ -51,27 +52,28 @@ struct MadeCount {
   uint32_t actor = 0;
   uint64_t session = 0;
   uint64_t made = 0;
-  bool rebuilt = false;  // `made` is only what the receiver of the records had seen
+  bool rebuilt = false;  // `made` counts only the records that the receiver had seen
 };
 
-// The counters of all sessions of a run, by file name; empty when there are none. Throws Error
-// (usage) naming a broken page.
+// The counters of all sessions of a run, sorted by file name. Throws Error (usage) naming a damaged
+// file.
 std::vector<MadeCount> ReadSequenceLogs(const std::filesystem::path& run);
 
 std::filesystem::path SequenceLogFile(const std::filesystem::path& run, uint32_t actor,
                                       uint64_t session);
 
-// A page that cannot be read, with its actor and session by its name.
+// A sequence log that cannot be read. Its file name gives the actor and the session.
 struct DamagedPage {
   std::filesystem::path path;
   uint32_t actor = 0;
   uint64_t session = 0;
 };
-// Sorted by file name. Throws Error (usage) naming a page that belongs to no actor.
+// The damaged sequence logs of a run, sorted by file name. Throws Error (usage) naming a file that
+// belongs to no actor.
 std::vector<DamagedPage> FindDamagedPages(const std::filesystem::path& run);
 
-// Writes a page in place of a damaged or missing one: `made` is what the receiver of the records
-// has seen, and the episodes go on at numbers that the session cannot have reached. Throws Error.
+// Replaces a damaged or missing file. `made` is the number of records that the receiver has seen.
+// Episode numbers continue at numbers that the session cannot have reached. Throws Error.
 void RebuildSequenceLog(const std::filesystem::path& run, uint32_t actor, uint64_t session,
                         uint32_t env_count, uint64_t made);
 

@@ -18,9 +18,9 @@ class AbstractScene {
   AbstractScene(const AbstractScene&) = delete;
   AbstractScene& operator=(const AbstractScene&) = delete;
 
-  // Makes room for all that the model may show. Resets flags.
+  // Allocates memory for everything that the model may show. Resets the scene's flags.
   void Allocate(const World& world);
-  // The world's current state as `camera` sees it. CHECK: Allocate was called.
+  // Updates the scene to the world's current state, seen by `camera`. CHECK: Allocate was called.
   void Update(World* world, const CameraView& camera);
 
   mjvScene_& scene();

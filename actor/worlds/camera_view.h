@@ -10,10 +10,11 @@ namespace shoal::worlds {
 // A free view looks at `lookat` from `distance`; azimuth 0 looks along +x, 90 along +y; negative
 // elevation looks down. Its vertical field of view is the model's (45 degrees by default).
 //
-// If `body` is set, the view is mounted on that body and moves with it: numbers are in the body's
-// frame, whose origin is the body's position.
+// If `body` is set, the view is mounted on that body and moves with the body. The numbers are then
+// in the body's frame, whose origin is the body's position.
 //
-// A camera of the model, which may follow a body, has `model_camera` and ignores those numbers.
+// If `model_camera` is set, the view is a camera of the model, which may follow a body. The numbers
+// of the free view are then ignored.
 struct CameraView {
   std::string name;
   std::array<double, 3> lookat{};  // m

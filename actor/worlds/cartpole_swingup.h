@@ -14,10 +14,11 @@ namespace shoal::worlds {
 
 class CartpoleSwingup final : public ControlWorld {
  public:
-  // `model_file` empty = our own model. Throws Error when it does not load or lacks an element.
+  // `model_file`: empty = the built-in model. Throws Error if the model does not load or lacks an
+  // element.
   explicit CartpoleSwingup(const std::string& model_file);
 
-  // See the goal half for the order. No goals.
+  // The goal half documents the order of the numbers. The task has no goals.
   void Observe(std::span<double> observation, std::span<double> achieved_goal,
                std::span<double> desired_goal) const override;
 

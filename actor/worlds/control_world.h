@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Base of the physics halves of the Control Suite's tasks: the order of engine calls in a reset and
-// in a control step, and which of them run without actuation. Behaves as dm_control's rl/control.py
-// and mujoco/engine.py ("legacy step") do.
+// Base of the physics halves of the Control Suite's tasks. Defines the order of engine calls in a
+// reset and in a control step, and which calls run without actuation. Follows dm_control's
+// rl/control.py and mujoco/engine.py ("legacy step").
 #pragma once
 
 #include <span>
@@ -14,33 +14,34 @@ namespace shoal::worlds {
 
 class ControlWorld : public World {
  public:
-  // reset data; forward; Draw; Settle; forward. Both forwards run without actuation.
+  // Order of calls: reset data, forward, Draw, Settle, forward. Both forward calls run without
+  // actuation.
   void Reset(Random* random) final;
-  // The same with a given state instead of a drawn one.
+  // Like Reset, with a given state instead of a drawn one.
   void ResetTo(std::span<const double> qpos, std::span<const double> qvel);
 
-  // Afterwards, values that depend on positions and velocities are current; those that depend on
-  // accelerations (touch) are of the last engine step. Episodes never terminate.
+  // After a step, values that depend on positions and velocities are current. Values that depend on
+  // accelerations (touch) belong to the last engine step. Episodes never terminate.
   Outcome Step(std::span<const double> action) final;
   std::span<const CameraView> cameras() const final { return cameras_; }
 
  protected:
   struct Shape {
     int joints, actuators;
-    int engine_steps;  // of a control step
+    int engine_steps;  // per control step
   };
-  // Throws Error when the model does not load or has another shape.
+  // Throws Error if the model does not load or has another shape.
   ControlWorld(const std::string& model, const std::string& model_file, const Shape& shape);
 
-  // Writes the initial state into data(), and what a task changes in the model.
+  // Writes the initial state to data(), and the task's changes to the model.
   virtual void Draw(Random* random) = 0;
-  // Lets the initial state come to rest, where a task does.
+  // Lets the initial state come to rest, in tasks that need it.
   virtual void Settle() {}
   virtual double Reward() const = 0;
 
   void ForwardWithoutActuation();
   void AdvanceControl(int engine_steps);
-  // Redraws with `draw` until nothing touches. Throws Error after a thousand vain attempts.
+  // Repeats `draw` until there are no contacts. Throws Error after kMostDraws failed attempts.
   template <class DrawState>
   void DrawUntilFree(DrawState draw) {
     for (int attempt = 0; attempt < kMostDraws; ++attempt) {

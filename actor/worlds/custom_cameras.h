@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cameras of a task: those that its world lists, those that its model names
-// (<camera name="overhead">) and those of the configuration.
+// The cameras of a task: the cameras that its world lists, the named cameras of its model
+// (<camera name="overhead">) and the cameras of the configuration.
 #pragma once
 
 #include <string>
@@ -12,28 +12,27 @@
 
 namespace shoal::worlds {
 
-// World::cameras(), then the named cameras of the model that have another name.
+// World::cameras(), then the model's named cameras whose names World::cameras() does not use.
 std::vector<CameraView> CamerasOf(const World& world);
 
-// The camera to look through by default: the first of CamerasOf. Throws Error (kUsage) when there
-// is none.
+// The default camera: the first of CamerasOf. Throws Error (kUsage) if there is none.
 CameraView DefaultCamera(const World& world);
 
-// The camera of that name among CamerasOf; throws Error (kUsage) listing those there are.
+// The camera `name` of CamerasOf. Throws Error (kUsage) listing the known cameras.
 CameraView FindCamera(const World& world, const std::string& name);
 
-// The camera of that name: the world's own, or one of observation.custom_cameras, or the model's.
-// Throws Error (kUsage) listing those there are, when a custom camera takes a name of the world's
-// own, and when the model lacks the body that one is mounted on.
+// The camera `name`: one of the world, of observation.custom_cameras or of the model. Throws Error
+// (kUsage) if there is no such camera, listing the known ones; if a custom camera has the name of a
+// camera of the world; and if the model lacks the body on which a camera is mounted.
 CameraView ChooseCamera(const World& world, const ObservationConfig& observation,
                         const std::string& name);
 
-// Names for the pictures of a run: observation.cameras; where these are the default ones of the
-// configuration and the task lacks one of them, the task's default camera alone.
+// Names of a run's cameras: observation.cameras. If observation.cameras has its default value and
+// the task lacks one of these cameras, only the task's default camera.
 std::vector<std::string> ChooseCameras(const World& world, const ObservationConfig& observation);
 
-// Throws Error (kUsage) if a camera that the world lists is invalid: no name or one that is taken,
-// numbers that are not finite, a distance that is not positive, or a number of a camera that the
+// Throws Error (kUsage) if a camera that the world lists is invalid: no name or a duplicate name,
+// numbers that are not finite, a distance that is not positive, or the number of a camera that the
 // model does not have.
 void CheckCameras(const World& world);
 

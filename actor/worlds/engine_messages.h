@@ -6,12 +6,12 @@
 
 namespace shoal::worlds {
 
-// Idempotent. From then on an engine error is thrown as Error; a warning is counted and logged: the
-// first of each text, then whenever its count doubles. Without this the engine would exit the
-// process, and write a file in the current folder.
+// Installs the callbacks; idempotent. Engine errors are then thrown as Error. Warnings are counted,
+// and logged for the first of each text and whenever the count of the text doubles. Without the
+// callbacks the engine would exit the process and write a file to the current folder.
 void InstallEngineCallbacks();
 
-// Warnings since the process started, all environments together.
+// Number of warnings since the process started, over all environments.
 int64_t EngineWarnings();
 
 }  // namespace shoal::worlds

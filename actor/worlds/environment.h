@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One environment of a task, as the actor loop sees it: reset, step, observe. It hides the physics
-// half of the task; only this folder knows MuJoCo.
+// Interface of one environment of a task: reset, step, observe. The interface hides the physics
+// half of the task; only this folder depends on MuJoCo.
 #pragma once
 
 #include <cstdint>
@@ -21,12 +21,12 @@ struct ObservationOut {
   std::span<float> vector;
 };
 
-// Result of one env step: of all its control steps (action_repeat) together.
+// Result of one env step, over all its control steps (action_repeat).
 struct StepResult {
   float reward = 0;  // unscaled, summed over the control steps
   bool terminated = false, truncated = false;
-  bool success = false;  // after the last control step; false where the task has none
-  float distance = 0;    // of achieved to desired goal in m; NaN where the task has none
+  bool success = false;  // after the last control step; false for tasks without success
+  float distance = 0;    // of achieved to desired goal in m; NaN for tasks without goals
 };
 
 // A body's mass, drawn for one episode.
@@ -39,27 +39,27 @@ class Environment {
  public:
   virtual ~Environment() = default;
   virtual const ObservationSpec& spec() const = 0;
-  // Reset and Step throw EpisodeFault (actor/worlds/episode_fault.h) when the simulation's state, a
-  // number of an observation or a reward is not finite: the episode is over, that step has no
-  // result, and `out` keeps its former content. They throw Error (kNonFinite) when an action is not
-  // finite.
+  // Reset and Step throw EpisodeFault (actor/worlds/episode_fault.h) if the simulation's state, a
+  // number of an observation or a reward is not finite. The episode is then over, the step has no
+  // result, and `out` is unchanged. Step throws Error (kNonFinite) if an action is not finite.
   //
-  // Starts the episode named by the stream key: equal keys give bit-identical episodes for equal
-  // actions, whatever happened before. Returns the distance at the start.
+  // Starts the episode of the stream key. Equal keys and equal actions give bit-identical episodes,
+  // independent of earlier episodes. Returns the distance at the start.
   virtual float Reset(uint64_t stream_key, ObservationOut out) = 0;
-  // `action` (A), each in [-1, 1], is repeated for the control steps of an env step, or until the
-  // episode ends; the observation is taken once, after the last.
+  // Plays one env step: repeats `action` (A), each component in [-1, 1], for its control steps or
+  // until the episode ends. Observes once, after the last control step.
   virtual StepResult Step(std::span<const float> action, ObservationOut out) = 0;
-  // Simulated time since a moment before the last reset; always 0 if it is unknown.
+  // Simulated time since a fixed moment before the last reset; always 0 if unknown.
   virtual double simulated_seconds() const { return 0; }
-  // Seconds spent drawing frames since the construction.
+  // Seconds spent drawing frames since construction.
   virtual double render_seconds() const = 0;
-  // Seconds spent in a user's code since the construction; empty: all of the code is Shoal's.
+  // Seconds spent in a user's code since construction; empty if the environment has no user code.
   virtual std::optional<double> user_seconds() const { return std::nullopt; }
-  // Drawn at the last reset, in the order drawn; empty unless the configuration randomizes.
+  // Masses drawn at the last reset, in drawing order; empty unless the configuration randomizes
+  // masses.
   virtual std::span<const DrawnMass> drawn_masses() const = 0;
-  // The goal of the running episode reached, drawn at its reset: (C, H, W) like a frame, from the
-  // same cameras. Empty unless the spec has a goal picture.
+  // Picture of the running episode's goal reached, drawn at the reset: (C, H, W) like a frame, from
+  // the same cameras. Empty unless the spec has a goal picture.
   virtual std::span<const uint8_t> goal_picture() const { return {}; }
 };
 
@@ -67,8 +67,9 @@ class Environment {
 class RenderContext;
 std::shared_ptr<RenderContext> MakeRenderContext(const ObservationConfig& observation);
 
-// Throws Error: unknown task (listing those there are), unknown camera, model file that does not
-// load. `render` may be null when config.observation.pixels is false.
+// Makes the environment of a configuration. Throws Error on an unknown task (listing the known
+// ones), an unknown camera, or a model file that does not load. `render` may be null if
+// config.observation.pixels is false.
 std::unique_ptr<Environment> MakeEnvironment(const Config& config,
                                              std::shared_ptr<RenderContext> render);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why an episode cannot go on: a number of the simulation is not finite. Training ends the episode
-// and begins another; a bad policy or a mistake in a task is another kind of error.
+// Fault of an episode: a number of the simulation is not finite. Training ends the episode and
+// begins another one. Bad policies and mistakes in a task are other kinds of errors.
 #pragma once
 
 #include <array>
@@ -12,14 +12,14 @@
 namespace shoal::worlds {
 
 enum class FaultCause {
-  kDiverged,     // the simulation's state, or what a physics half itself reports as not finite
+  kDiverged,     // the simulation's state, or a fault that the physics half reports itself
   kObservation,  // a number that World::Observe wrote
   kReward,       // a reward that the physics half returned
 };
 inline constexpr std::array kFaultCauses{FaultCause::kDiverged, FaultCause::kObservation,
                                          FaultCause::kReward};
 
-// "diverged", "observation", "reward": as metrics and files have it.
+// Name of a cause in metrics and files: "diverged", "observation", "reward".
 constexpr std::string_view NameOf(FaultCause cause) {
   switch (cause) {
     case FaultCause::kDiverged:
@@ -32,8 +32,8 @@ constexpr std::string_view NameOf(FaultCause cause) {
   return "?";
 }
 
-// Its message is one line that names the task and the number. The exit code is that of numbers that
-// are not finite.
+// The error of a faulty episode. The message is one line that names the task and the number. The
+// exit code is that of ErrorKind::kNonFinite.
 class EpisodeFault : public Error {
  public:
   EpisodeFault(FaultCause cause, const std::string& message)

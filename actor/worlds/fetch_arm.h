@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The robot that all Fetch tasks share: how it is set up, how an action moves it, what it senses.
+// The robot that all Fetch tasks share: its set-up, the effect of actions, its sensors.
 //
 // The arm has no motors: a weld pulls the gripper towards a mocap body, and an action places the
-// mocap body relative to where the gripper is. So the arm follows with a lag, and orientation is
-// steered back to "down" a little every step.
+// mocap body relative to the gripper's position. The arm therefore follows with a lag, and each
+// step turns the gripper a little back to "down".
 //
-// Behaviour of Gymnasium-Robotics' Fetch environments, v4, down to the order of engine calls.
+// Follows Gymnasium-Robotics' Fetch environments, v4, including the order of engine calls.
 #pragma once
 
 #include <array>
@@ -18,47 +18,50 @@
 namespace shoal::worlds {
 
 struct FetchArmSetup {
-  std::array<double, 3> base{};     // slides x, y, z at the start, m
+  std::array<double, 3> base{};     // positions of slides x, y, z at the start, m
   double gripper_extra_height = 0;  // above the table's working height, m
-  bool block_gripper = true;        // fingers held shut
+  bool block_gripper = true;        // keeps the fingers shut
 };
 
-// Lives inside the world whose model and state it moves; borrows both.
+// Member of the world whose model and state it moves; borrows both.
 class FetchArm {
  public:
   static constexpr int kEngineStepsPerEnvStep = 20;
 
-  // Throws Error naming what the model lacks.
+  // Throws Error naming the element that the model lacks.
   FetchArm(World* world, const FetchArmSetup& setup, Physics physics);
 
-  // Once, after loading and placing an object: moves the gripper to where episodes start and keeps
-  // that state.
+  // Moves the gripper to the start position of episodes and keeps this initial state. Call it once,
+  // after the model is loaded and an object is placed.
   void SetUp();
-  // Grip site in m, as the last of the setup's engine steps left it: one such step stale.
+  // Position of the grip site in m after SetUp. The value is one engine step old.
   const std::array<double, 3>& initial_grip() const { return initial_grip_; }
 
-  // Back to the kept state: everything else (mocap pose, solver warm start) as in a fresh state.
+  // Restores the initial state. Everything else (mocap pose, solver warm start) is as in newly made
+  // data.
   void RestoreInitialState();
 
-  // action[0..2]: displacement in units of 5 cm; action[3]: fingers, ignored while blocked. After
-  // this the caller advances the engine by kEngineStepsPerEnvStep and calls FinishStep.
+  // Applies an action. action[0..2]: displacement in units of 5 cm; action[3]: fingers, ignored
+  // while blocked. The caller then advances the engine by kEngineStepsPerEnvStep and calls
+  // FinishStep.
   void Act(std::span<const double> action);
-  // Shuts the fingers of a blocked gripper again and brings positions up to date.
+  // Shuts the fingers of a blocked gripper again and updates positions.
   void FinishStep();
 
-  // For pictures of goals: the engine runs until the grip site is within 1 mm of `position` (m), or
-  // as near as it comes within 20 env steps, and the fingers then stand `opening` m from the
-  // middle. At rest, positions up to date.
+  // Moves the gripper for pictures of goals. The engine runs until the grip site is within 1 mm of
+  // `position` (m), or for at most 20 env steps. Each finger is then `opening` m from the middle,
+  // the arm is at rest, and positions are up to date.
   void MoveTo(const std::array<double, 3>& position, double opening);
 
-  // Grip site in m.
+  // Position of the grip site in m.
   std::array<double, 3> GripPosition() const;
-  // Grip site's linear velocity times the length of an env step, m per env step.
+  // Linear velocity of the grip site times the duration of an env step, m per env step.
   std::array<double, 3> GripVelocity() const;
-  // (right, left): finger joints in m, and their velocities times the length of an env step.
+  // (right, left): positions of the finger joints in m, and their velocities times the duration of
+  // an env step.
   std::array<double, 2> Fingers() const;
   std::array<double, 2> FingerVelocities() const;
-  // 0.04 s.
+  // Duration of an env step: 0.04 s.
   double StepSeconds() const;
 
  private:

@@ -8,15 +8,15 @@
 
 namespace shoal::worlds {
 
-// gymnasium: the view of the published environments, in which the target is under two pixels wide
-// at 84x84. front, side, close: near the space that gripper, object and goal move in: a cube for
-// Reach and Push, twice as high for PickAndPlace, most of the long table for Slide. wrist: moves
-// with the gripper and looks at what is below it.
+// gymnasium: the view of the published environments; at 84x84 the target is less than two pixels
+// wide. front, side, close: views of the space in which gripper, object and goal move (a cube for
+// Reach and Push, twice as high for PickAndPlace, most of the long table for Slide). wrist: moves
+// with the gripper and looks down.
 std::span<const CameraView> FetchCameras();
 std::span<const CameraView> FetchPickAndPlaceCameras();
 std::span<const CameraView> FetchSlideCameras();
 
-// Larger views for films: from high at the side, where gripper and arm seldom hide object or goal.
+// Cameras for films, high at the side, so that gripper and arm seldom hide the object or the goal.
 const CameraView& FetchPushFilmCamera();
 const CameraView& FetchPickAndPlaceFilmCamera();
 const CameraView& FetchSlideFilmCamera();

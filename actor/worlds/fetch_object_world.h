@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Physics half of FetchPush, FetchSlide and FetchPickAndPlace: bring an object to a goal. The three
-// differ in model and numbers only.
+// tasks differ only in model and numbers.
 #pragma once
 
 #include <array>
@@ -13,9 +13,9 @@ namespace shoal::worlds {
 
 // Position of the gripper in the picture of a goal. The object is at rest at the goal, not rotated.
 enum class GripperAtGoal {
-  kAbove,   // 10 cm above the object, fingers shut: touches nothing, and a wrist camera sees it
-  kAround,  // the grip site in the object's middle, the fingers at its sides
-  kStart,   // where episodes start: the arm cannot reach the goals
+  kAbove,   // 10 cm above the object, fingers shut, no contact; visible to a wrist camera
+  kAround,  // grip site in the middle of the object, fingers at the object's sides
+  kStart,   // start position of episodes: the arm cannot reach the goals
 };
 
 struct FetchObjectSetup {
@@ -24,21 +24,21 @@ struct FetchObjectSetup {
   const CameraView& (*film_camera)();
   FetchArmSetup arm;
   std::array<double, 3> object{};  // position before the set-up's engine steps, m; unturned
-  double object_range = 0;         // of the object around the grip, each axis, m
-  double goal_range = 0;           // likewise of the goal
+  double object_range = 0;         // largest offset of the object from the grip, each axis, m
+  double goal_range = 0;           // largest offset of the goal from the grip, each axis, m
   double goal_offset_x = 0;        // added to the goal, m
-  bool goal_in_the_air = false;    // half of the goals
+  bool goal_in_the_air = false;    // half of the goals are above the table
   GripperAtGoal gripper_at_goal = GripperAtGoal::kAbove;
 };
 
 class FetchObjectWorld final : public FetchWorld {
  public:
-  // Throws Error when the model does not load or lacks an element.
+  // Throws Error if the model does not load or lacks an element.
   FetchObjectWorld(const FetchObjectSetup& setup, const WorldOptions& options);
 
-  // Draws, in this order: the object's x and y, again and again until it is 10 cm or more from the
-  // grip; three numbers x, y, z for the goal, of which z is not used; where goals may be in the
-  // air a coin, and when it is below 1/2 the height above the table.
+  // Draws in this order: the object's x and y, repeated until the object is 10 cm or more from the
+  // grip; three numbers x, y, z for the goal (z is not used); if goals may be in the air, a uniform
+  // number, and if this is below 1/2, the height above the table.
   void Reset(Random* random) override;
   // observation (25): see the goal half.
   void Observe(std::span<double> observation, std::span<double> achieved_goal,
@@ -46,15 +46,14 @@ class FetchObjectWorld final : public FetchWorld {
 
   const CameraView* film_camera() const override { return &setup_.film_camera(); }
   int object_site() const override { return object_site_; }
-  // z in m of the object's site as the last of the set-up's engine steps left it: that of a goal on
-  // the table.
+  // z in m of the object's site after the set-up's engine steps, and of goals on the table.
   double table_height() const { return table_height_; }
 
  private:
   void PlaceObject(const std::array<double, 2>& xy) override;
-  // The object at the goal, the gripper as the set-up says.
+  // Moves the object to the goal and the gripper to the set-up's gripper_at_goal.
   void MoveToGoal() override;
-  // The object's position, m, unturned; takes its velocity away.
+  // Places the object at `position` (m), not rotated, with zero velocity.
   void SetObject(const std::array<double, 3>& position);
 
   FetchObjectSetup setup_;

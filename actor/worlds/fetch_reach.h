@@ -10,7 +10,7 @@ namespace shoal::worlds {
 
 class FetchReach final : public FetchWorld {
  public:
-  // Throws Error when the model does not load or lacks an element.
+  // Throws Error if the model does not load or lacks an element.
   explicit FetchReach(const WorldOptions& options = {});
 
   // Draws the goal: three uniform numbers, x, y, z in this order, within 15 cm of the grip's
@@ -21,7 +21,7 @@ class FetchReach final : public FetchWorld {
                std::span<double> desired_goal) const override;
 
  private:
-  // The grip site at the goal, the fingers shut.
+  // Moves the grip site to the goal, with the fingers shut.
   void MoveToGoal() override;
 };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Physics half of the Hopper tasks: a planar one-legged robot that is paid for moving forward.
+// Physics half of the Hopper tasks: a planar one-legged robot, rewarded for moving forward.
 //
-// Behaviour of Gymnasium's Hopper-v4 and v5, and of the "custom hopper" pair used for sim-to-sim
-// transfer, whose source lacks one kilogram of torso that its target has.
+// Follows Gymnasium's Hopper-v4 and v5, and the "custom hopper" pair for sim-to-sim transfer. The
+// torso of the pair's source is one kilogram lighter than that of the target.
 #pragma once
 
 #include <memory>
@@ -15,13 +15,13 @@
 namespace shoal::worlds {
 
 struct HopperVariant {
-  // Masses and inertias that MuJoCo up to 2.1.0 gave capsules, instead of the exact ones.
+  // Uses the masses and inertias of capsules in MuJoCo up to 2.1.0, instead of the exact ones.
   bool old_masses = false;
-  // Added to the torso's mass (kg) after everything derived from it was computed.
+  // Added to the torso's mass (kg). Quantities derived from the mass are not recomputed.
   double torso_mass_change = 0;
-  // Pay 1 for every step, also for the one that ends the episode.
+  // Adds reward 1 for every step, also for the step that ends the episode.
   bool always_healthy_reward = false;
-  // Velocities in the observation are limited to [-10, 10].
+  // Limits velocities in the observation to [-10, 10].
   bool clip_velocities = true;
 };
 
@@ -29,11 +29,11 @@ class Hopper final : public World {
  public:
   static constexpr int kEngineStepsPerControlStep = 4;
 
-  // `model_file` empty = our own model. Throws Error when it does not load, lacks an element or has
-  // another number of joints.
+  // `model_file`: empty = the built-in model. Throws Error if the model does not load, lacks an
+  // element or has another number of joints.
   Hopper(const HopperVariant& variant, const std::string& model_file);
 
-  // Positions, then velocities, each uniform within 0.005 of their rest.
+  // Draws positions, then velocities, each uniform within 0.005 of the rest state.
   void Reset(Random* random) override;
   // Starts an episode from this state (6 each; m, rad and their rates).
   void ResetTo(std::span<const double> qpos, std::span<const double> qvel);
@@ -43,7 +43,7 @@ class Hopper final : public World {
   // observation (11): positions without x, velocities; see the goal half. No goals.
   void Observe(std::span<double> observation, std::span<double> achieved_goal,
                std::span<double> desired_goal) const override;
-  // track: follows the centre of mass, as published. free: does not.
+  // track: follows the centre of mass, like the published camera. free: does not move.
   std::span<const CameraView> cameras() const override { return cameras_; }
 
  private:
@@ -58,7 +58,7 @@ std::unique_ptr<World> MakeHopperV5(const std::string& model_file);
 std::unique_ptr<World> MakeCustomHopperSource(const std::string& model_file);
 std::unique_ptr<World> MakeCustomHopperTarget(const std::string& model_file);
 
-// The variants behind these names.
+// The variants of these tasks.
 HopperVariant HopperV4();
 HopperVariant HopperV5();
 HopperVariant CustomHopperSource();

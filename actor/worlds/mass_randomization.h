@@ -3,9 +3,9 @@
 //
 //   mass_b ~ Uniform[low_b, high_b], body by body in alphabetical order
 //
-// Only the mass itself is written, as in other environments with randomized masses, into the
-// world's own copy of the model. Inertias and what the compiler derived from them (inverse weights,
-// subtree masses) are unchanged.
+// Only the mass is changed, in the world's own copy of the model, as in other environments with
+// randomized masses. Inertias and quantities that the compiler derived (inverse weights, subtree
+// masses) do not change.
 #pragma once
 
 #include <array>
@@ -22,15 +22,15 @@ namespace shoal::worlds {
 
 class MassRandomization {
  public:
-  // intervals: body -> [low, high] in kg, 0 < low <= high. Throws Error (kUsage) naming a body that
-  // the model does not have, and those it has.
+  // `intervals`: body -> [low, high] in kg, 0 < low <= high. Throws Error (kUsage) naming a body
+  // that the model does not have, and the model's bodies.
   MassRandomization(const World& world,
                     const std::map<std::string, std::array<double, 2>>& intervals);
 
   // Draws one number per body and writes it into the model of `world`. Call it before the world's
   // reset. One thread.
   void Draw(Random* random, World* world);
-  // In the order drawn; masses of the last Draw.
+  // Masses of the last Draw, in drawing order.
   std::span<const DrawnMass> drawn() const { return drawn_; }
 
  private:

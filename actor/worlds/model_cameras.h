@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cameras that a model brings itself: fixed, following a body (track, trackcom) or turning to
-// it (targetbody).
+// The cameras of a model: fixed, following a body (track, trackcom) or turning to a body
+// (targetbody).
 #pragma once
 
 #include <vector>
@@ -11,10 +11,10 @@ struct mjModel_;
 
 namespace shoal::worlds {
 
-// The named ones, in the model's order. Throws Error when there is none.
+// The named cameras, in the model's order. Throws Error if there are none.
 std::vector<CameraView> ModelCameras(const mjModel_& model);
 
-// The same; empty when there is none.
+// The named cameras, in the model's order; may be empty.
 std::vector<CameraView> NamedCameras(const mjModel_& model);
 
 }  // namespace shoal::worlds

@@ -12,7 +12,7 @@ struct ModelFile {
   std::string_view text;
 };
 
-// Defined in a source that CMake writes.
+// Defined in a source file that CMake generates.
 std::span<const ModelFile> EmbeddedModelFiles();
 
 }  // namespace shoal::worlds

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Models: from our embedded files or from a user's, and what identifies one.
+// Loading of models, from embedded files or from a user's file, and their fingerprints.
 #pragma once
 
 #include <string>
@@ -8,19 +8,20 @@
 
 namespace shoal::worlds {
 
-// A copy of the embedded file `name` ("fetch_reach.xml"), compiled once per process, or, when
-// `user_file` is not empty, the file at that path, compiled now (its includes and meshes are looked
-// up beside it). `addition`: MJCF elements ("<equality>...</equality>") that the model gets after
-// its own. Equal text gives equal models, procedural textures included. Any thread, one at a time
-// for files of users. Throws Error with the engine's reason when it does not load.
+// Loads a model. If `user_file` is not empty, compiles the file at that path; its includes and
+// meshes are looked up in the same folder. Otherwise returns a copy of the embedded file `name`
+// ("fetch_reach.xml"), which is compiled once per process. `addition`: MJCF elements
+// ("<equality>...</equality>") that are appended to the model. Equal text gives equal models,
+// procedural textures included. Any thread; users' files on one thread at a time. Throws Error with
+// the engine's reason if the model does not load.
 ModelHandle LoadModel(const std::string& name, const std::string& user_file,
                       const std::string& addition = "");
 
-// State of a model, with all of its buffers.
+// Makes the state of a model, with all of its buffers.
 DataHandle MakeData(const mjModel_& model);
 
-// Hex hash of the compiled model's numbers and the engine's version. Equal for equal models
-// whatever file they came from; to be taken before the model is changed.
+// Hex hash of the compiled model's numbers and the engine's version. Equal models have equal
+// fingerprints, independent of their files. Call before the model is changed.
 std::string ModelFingerprint(const mjModel_& model);
 
 }  // namespace shoal::worlds

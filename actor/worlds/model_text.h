@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A model from MJCF text in the program, or from a file beside a task library: for tasks that bring
-// their own.
+// Loading of a task's own model, from MJCF text in the program or from a file beside a task
+// library.
 #pragma once
 
 #include <string>
@@ -10,14 +10,14 @@
 
 namespace shoal::worlds {
 
-// Compiles `mjcf`, or the file at `user_file` where that is not empty. Throws Error with the
-// engine's reason when it does not load.
+// Compiles the file at `user_file`, or `mjcf` if `user_file` is empty. Throws Error with the
+// engine's reason if the model does not load.
 ModelHandle LoadModelText(const std::string& mjcf, const std::string& user_file);
 
-// Compiles the user's model file, or, where there is none, `file` beside the task library:
-// LoadModelFile(options, "model/arm.xml"). Its includes, meshes and textures are looked up beside
-// it. World's second argument is then options.ModelOr(file), so that messages name the file. Errors
-// as above, and a file that does not exist.
+// Compiles the user's model file; if there is none, `file` beside the task library:
+// LoadModelFile(options, "model/arm.xml"). Includes, meshes and textures are looked up in the
+// folder of the model file. Pass options.ModelOr(file) as World's second argument, so that messages
+// name the file. Throws Error if the file does not exist, and the errors of LoadModelText.
 ModelHandle LoadModelFile(const WorldOptions& options, const std::string& file);
 
 }  // namespace shoal::worlds

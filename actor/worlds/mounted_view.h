@@ -10,12 +10,12 @@ struct mjvScene_;
 
 namespace shoal::worlds {
 
-// Throws Error (kUsage) naming camera and body when the model has no body of that name. Views that
-// are not mounted are left alone.
+// Throws Error (kUsage) naming camera and body if the model lacks the body of a mounted view.
+// Accepts views that are not mounted.
 void CheckMount(const mjModel_& model, const CameraView& camera);
 
-// Moves the scene's camera, and its headlight, to where the mounted `camera` is now. The scene has
-// been updated with a free camera, of which the field of view stays. CHECK: CheckMount passes.
+// Moves the scene's camera and headlight to the present pose of the mounted `camera`. The scene was
+// updated with a free camera before, whose field of view is kept. CHECK: CheckMount passes.
 void MountCamera(const mjModel_& model, const mjData_& data, const CameraView& camera,
                  mjvScene_* scene);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// OSMesa, opened at run time: programs start without it and need it only for the qualities that it
-// draws.
+// The OSMesa library, opened at run time. Programs start without OSMesa and need it only for the
+// qualities that it draws.
 #pragma once
 
 #include <GL/gl.h>
@@ -8,7 +8,7 @@
 
 namespace shoal::worlds {
 
-// Functions of the library that Shoal calls itself. The engine finds its own there, too.
+// Functions of OSMesa that Shoal calls. The engine looks up its own functions.
 struct OsmesaLibrary {
   decltype(&OSMesaCreateContextExt) create_context;
   decltype(&OSMesaMakeCurrent) make_current;
@@ -26,8 +26,8 @@ struct OsmesaLibrary {
   decltype(&glVertex3fv) vertex;
 };
 
-// Opened once per process, then kept. Any thread. Throws Error (kRuntime) in one line that says
-// which package to install and which quality does without it.
+// The library, opened once per process and then kept open. Any thread. Throws Error (kRuntime) in
+// one line that names the package to install and the quality that does not need OSMesa.
 const OsmesaLibrary& Osmesa();
 
 // Opens the library of this file name; for Osmesa() and its test.

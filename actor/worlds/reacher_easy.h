@@ -15,19 +15,20 @@ namespace shoal::worlds {
 
 class ReacherEasy final : public ControlWorld {
  public:
-  // `model_file` empty = our own model. Throws Error when it does not load or lacks an element.
+  // `model_file`: empty = the built-in model. Throws Error if the model does not load or lacks an
+  // element.
   explicit ReacherEasy(const std::string& model_file);
 
-  // Sets the target's centre (m) from the next reset on. A drawn episode places it anew.
+  // Sets the target's centre (m) for the next ResetTo. Reset draws a new position.
   void PlaceTarget(const std::array<double, 2>& position);
-  // See the goal half for the order. No goals.
+  // The goal half documents the order of the numbers. The task has no goals.
   void Observe(std::span<double> observation, std::span<double> achieved_goal,
                std::span<double> desired_goal) const override;
 
  private:
   void Draw(Random* random) override;
   double Reward() const override;
-  // From the finger to the target, m.
+  // Vector from the finger to the target, m.
   std::array<double, 2> ToTarget() const;
 
   int finger_, target_;  // geoms

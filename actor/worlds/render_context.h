@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Off-screen rendering at the size of a frame, in the quality that the configuration names.
 //
-// One context draws one model: environments of one process hold copies of it. One thread.
+// One context draws one model; all environments of a process have copies of the same model. One
+// thread.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +19,7 @@ namespace shoal::worlds {
 
 class RenderContext {
  public:
-  // Qualities fast and reference set LP_NUM_THREADS=0 for the process, and throw Error when there
+  // The qualities fast and reference set LP_NUM_THREADS=0 for the process and throw Error if there
   // is no OSMesa context.
   explicit RenderContext(const ObservationConfig& observation);
   ~RenderContext();
@@ -30,16 +31,16 @@ class RenderContext {
   // Channels of one camera: 1 grey, 3 RGB.
   int channels_per_camera() const { return grey_ ? 1 : 3; }
 
-  // From now on Render gives this instead of colours. Throws Error (kUsage) when the quality has
-  // colours alone.
+  // Sets the output of later calls of Render. Throws Error (kUsage) if the quality only has
+  // colours.
   void SetOutput(PainterOutput output) { painter_->SetOutput(output); }
 
-  // To be called once per world before Render. Uploads the model of the first; throws Error when a
-  // later one has another model.
+  // Call it once per world before Render. Uploads the model of the first world; throws Error if a
+  // later world has another model.
   void Attach(World* world);
 
-  // frame (cameras * channels_per_camera, H, W), row 0 = top: the world's current state as each of
-  // the cameras sees it. CHECK on a frame of another size.
+  // Draws the world's current state, seen by each camera, to `frame` (cameras *
+  // channels_per_camera, H, W), row 0 = top. CHECK on the size of `frame`.
   void Render(World* world, std::span<const CameraView> cameras, std::span<uint8_t> frame);
 
  private:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The physics half of a task: a model, its state, and what reset and step do to them. Knows nothing
-// of pixels' layout, rewards for goals or episode lengths.
+// The physics half of a task: a model, its state, and the effect of reset and step on both. Pixel
+// layouts, rewards for goals and episode lengths are handled elsewhere.
 //
-// A step here is a control step; repeating actions is the environment's business.
+// A step here is a control step; the environment repeats actions.
 //
 // Numbers are the engine's doubles. One thread at a time per world; worlds are independent.
 #pragma once
@@ -22,38 +22,40 @@ class World {
   // Result of a step besides the observation. Tasks with goals take the reward from their goal
   // half.
   struct Outcome {
-    double reward = 0;  // of tasks without goals, unscaled
+    double reward = 0;  // unscaled; used in tasks without goals
     bool terminated = false;
   };
 
-  // Takes the model, as loaded; `model_file` is where a user's came from, empty = our own.
+  // Takes a newly loaded model. `model_file`: path of a user's model; empty = the built-in model.
   explicit World(ModelHandle model, const std::string& model_file = "");
   virtual ~World() = default;
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  // Starts an episode whose random draws come from `random` in a fixed, documented order. Nothing
-  // of the episodes before remains.
+  // Starts an episode. All random draws use `random`, in a fixed, documented order. The new state
+  // does not depend on earlier episodes.
   virtual void Reset(Random* random) = 0;
   // `action`: the task's components, each in [-1, 1].
   virtual Outcome Step(std::span<const double> action) = 0;
-  // Writes every number of the task's blocks; goals are empty for tasks without goals. A write
-  // beyond a span and an unwritten number end the program with a line that names the block.
+  // Writes every number of the task's blocks; the goals are empty for tasks without goals. If a
+  // number is not written, or is written beyond a span, the program ends with a line that names the
+  // block.
   virtual void Observe(std::span<double> observation, std::span<double> achieved_goal,
                        std::span<double> desired_goal) const = 0;
   // Hides the goal in all frames drawn from now on. False: the goal cannot be hidden.
   virtual bool HideGoal() { return false; }
-  // The first is the one to look at by default; ModelCameras (actor/worlds/model_cameras.h) gives
-  // those that the model names. A camera of the model can be named in observation.cameras whether
-  // it is listed here or not. Lives as long as the world.
+  // Cameras of the world; the first is the default camera. ModelCameras
+  // (actor/worlds/model_cameras.h) returns the named cameras of the model. observation.cameras may
+  // name a camera of the model even if it is not listed here. The span is valid as long as the
+  // world.
   virtual std::span<const CameraView> cameras() const = 0;
-  // For the larger view of films, none of cameras(); null where one of these serves. Lives as long
-  // as the world.
+  // Camera of the larger view of films, not in cameras(); null if films use one of cameras(). Valid
+  // as long as the world.
   virtual const CameraView* film_camera() const { return nullptr; }
-  // The task can show its goal reached: MoveToGoal, of which pictures of goals are drawn.
+  // True if the task implements MoveToGoal, which pictures of goals need.
   virtual bool CanMoveToGoal() const { return false; }
-  // Calls `look` with the world in the state that MoveToGoal makes of the running episode's, which
-  // then is the episode's again, to the last bit. CHECK: CanMoveToGoal().
+  // Applies MoveToGoal to the state of the running episode, calls `look`, and restores the state to
+  // the last bit. CHECK: CanMoveToGoal().
   void LookAtGoal(const std::function<void()>& look);
 
   mjModel_& model() { return *model_; }
@@ -62,56 +64,57 @@ class World {
   const mjData_& data() const { return *data_; }
   // The engine's clock.
   double simulated_seconds() const;
-  // Fingerprint of the model as loaded: see ModelFingerprint.
+  // Fingerprint of the loaded model before any change: see ModelFingerprint.
   const std::string& fingerprint() const { return fingerprint_; }
 
-  // Gives the memory of the model's textures back to the system, 11 MB of sky for each world of the
-  // Control Suite. For worlds that are drawn by a context that has a model already, or never.
+  // Frees the memory of the model's textures: 11 MB of sky for each world of the Control Suite. Use
+  // it for worlds that are never drawn, or whose render context already has the model.
   void ReleaseTextures();
   bool textures_released() const { return textures_released_; }
 
   // Name of the model in messages: "the model" or "model file 'mine.xml'".
   const std::string& source() const { return source_; }
 
-  // Ids of named elements; throw Error naming the model and what it lacks.
+  // Ids of named elements. Throw Error naming the model and the missing element.
   int BodyId(const std::string& name) const;
   int SiteId(const std::string& name) const;
   int JointId(const std::string& name) const;
   int GeomId(const std::string& name) const;
   int SensorId(const std::string& name) const;
 
-  // Forgets that the state diverged: a new episode begins.
+  // Clears the mark that the state has diverged, before a new episode.
   void ForgetDivergence();
 
   // Puts a site, such as a target's marker, at `position` (x, y, z in m, in the frame of the body
-  // that carries it). The next forward call moves it. Writing site_pos alone is not enough: of a
-  // site that the model puts at its body's origin the engine copies the body's place and never
-  // looks at site_pos.
+  // that carries the site). The next forward call moves the site. Writing site_pos alone is not
+  // enough: if the model puts a site at its body's origin, the engine copies the body's position
+  // and ignores site_pos.
   void PlaceSite(int site, std::span<const double> position);
 
  protected:
-  // Sets the model's controls to the action, one number for each actuator. Throws Error (kUsage)
-  // when the action has another number of components than the model has actuators.
+  // Sets the model's controls to the action, one number for each actuator. Throws Error (kUsage) if
+  // the number of components is not the number of actuators.
   void SetControls(std::span<const double> action);
-  // `count` engine steps, then CheckState.
+  // Makes `count` engine steps, then calls CheckState.
   void Advance(int count);
-  // Throws EpisodeFault when the state became non-finite or too large: the engine then resets
-  // itself silently, so nothing after that can be trusted. The episode then ends.
+  // Throws EpisodeFault if the state became non-finite or too large. The engine has then reset the
+  // state without an error, so the episode must end.
   void CheckState() const;
 
  private:
-  // Moves to a state in which the goal of the running episode is reached; the same state for the
-  // same goal. Where the rest of the world is by then is the task's to say, and documented.
+  // Moves to a state in which the goal of the running episode is reached. Equal goals give equal
+  // states. Each task defines and documents the rest of the state.
   virtual void MoveToGoal() {}
   int ElementId(int object_type, const char* kind, const std::string& name) const;
 
   ModelHandle model_;
   std::string source_;
   DataHandle data_;
-  // Made last: what it takes as much memory as the model for is then free for the next world.
+  // Computed last: the computation needs as much memory as the model, which is then free for the
+  // next world.
   std::string fingerprint_;
   bool textures_released_ = false;
-  DataHandle kept_data_;  // the episode's, while LookAtGoal has the world moved; null before
+  DataHandle kept_data_;  // the episode's state during LookAtGoal; null before the first call
 };
 
 }  // namespace shoal::worlds

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An Environment out of a task's two halves: the physics half moves, the goal half judges, the
-// render context draws.
+// Environment made of a task's two halves and a render context. The physics half simulates, the
+// goal half computes rewards and success, the render context draws.
 #pragma once
 
 #include <memory>
@@ -20,11 +20,11 @@ namespace shoal::worlds {
 
 class WorldEnvironment final : public Environment {
  public:
-  // `render` null = no pixels, whatever the configuration says of
-  // cameras; which cameras: ChooseCameras (actor/worlds/custom_cameras.h). Of `config` it takes
-  // observation, randomization, action_repeat, end_on_success and whether there is hindsight.
-  // Throws Error (kUsage) on a camera, goal mode or body that does not exist, and on episodes that
-  // are to end on a success which the task does not have.
+  // `render`: null = no pixels, even if the configuration has cameras. ChooseCameras
+  // (actor/worlds/custom_cameras.h) selects the cameras. The environment uses these parts of
+  // `config`: observation, randomization, action_repeat, end_on_success, and whether hindsight is
+  // on. Throws Error (kUsage) if a camera, goal mode or body does not exist, or if end_on_success
+  // is set for a task without success.
   WorldEnvironment(const tasks::Task& task, std::unique_ptr<World> world, const Config& config,
                    std::shared_ptr<RenderContext> render);
 
@@ -37,8 +37,8 @@ class WorldEnvironment final : public Environment {
   std::span<const uint8_t> goal_picture() const override { return goal_picture_; }
 
  private:
-  // Pictures must not show the goal that was meant where samples get goals of hindsight, and where
-  // a picture of its own shows it.
+  // Hides the goal in the pictures. Pictures must not show the desired goal if hindsight replaces
+  // goals, or if a separate goal picture shows the goal.
   void HideGoal(const char* why);
   void PrepareGoalPicture();
   void BuildSpec(const ObservationConfig& observation);
@@ -51,7 +51,7 @@ class WorldEnvironment final : public Environment {
              std::vector<float>* rounded) const;
   void Observe(ObservationOut out);
   void Draw(std::span<uint8_t> frame);
-  // NaN without goals.
+  // Distance of the achieved to the desired goal; NaN for tasks without goals.
   double Distance() const;
 
   const tasks::Task task_;
@@ -63,8 +63,8 @@ class WorldEnvironment final : public Environment {
   std::vector<CameraView> cameras_;
   bool goal_hidden_ = false;
   ObservationSpec spec_;
-  std::vector<uint8_t> goal_picture_;  // (C, H, W); empty without
-  ObservedNumbers observed_;  // as the world gives them; rounded once to what records carry:
+  std::vector<uint8_t> goal_picture_;  // (C, H, W); empty if the spec has no goal picture
+  ObservedNumbers observed_;  // float64 numbers of the world; the next three are rounded to float32
   std::vector<float> state_, achieved_goal_, desired_goal_;
   std::vector<double> action_;
   double render_seconds_ = 0;

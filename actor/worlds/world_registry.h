@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Physics halves by name.
+// Registry of physics halves by name.
 #pragma once
 
 #include <memory>
@@ -10,16 +10,16 @@
 
 namespace shoal::worlds {
 
-// `name` is Task::world() of a goal half. Throws Error when there is no such world (kUsage), a
-// model does not load or lacks an element, or the world has no such physics. Sets
-// WorldOptions::task_folder.
+// Makes a physics half and sets WorldOptions::task_folder. `name`: Task::world() of a goal half.
+// Throws Error if there is no such world (kUsage), if the model does not load or lacks an element,
+// or if the world does not support the physics.
 std::unique_ptr<World> MakeWorld(const std::string& name, const WorldOptions& options);
 
 using WorldMaker = std::unique_ptr<World> (*)(const WorldOptions& options);
 
-// Adds a physics half; tasks may share one. At the start of a program, before threads. Throws Error
-// (kUsage) when there is another of that name. What `physics_half` returns is checked when it is
-// made: no world, or cameras that cannot be, are errors (kUsage).
+// Registers a physics half; several tasks may share it. Call it at the start of a program, before
+// threads start. Throws Error (kUsage) if the name is already registered. MakeWorld checks the
+// result of `physics_half`: a null world and invalid cameras are errors (kUsage).
 void AddWorld(const std::string& name, WorldMaker physics_half);
 
 }  // namespace shoal::worlds

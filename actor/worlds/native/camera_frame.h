@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The camera that the engine would draw a scene with, and what its rays are.
+// The camera that the engine uses for a scene, and the rays of its pixels.
 //
-// All of this room computes with + - * / and square roots only, uncontracted,
-// so that frames are equal on all CPUs.
+// All code of this folder computes with + - * / and square roots only, without contraction, so that
+// frames are equal on all CPUs.
 #pragma once
 
 #include <array>
@@ -40,18 +40,18 @@ struct CameraFrame {
   Vector3 Point(Vector3 p) const { return Direction(p - position); }
 };
 
-// The mean of the scene's two cameras. Throws Error when it is not finite or
-// its near plane is not in front of the eye.
+// The mean of the scene's two cameras. Throws Error if the camera is not finite or its near plane
+// is not in front of the eye.
 CameraFrame FrameOf(const mjvScene_& scene, int width, int height);
 
-// The rays of a picture, tile after tile; owns what View points to.
+// The rays of a picture, tile after tile. Owns the arrays that View points to.
 class RayTables {
  public:
-  // Fills everything of `view` but the sky.
+  // Fills `view` except the sky.
   void Fill(const CameraFrame& frame, int width, int height, View* view);
 
  private:
-  std::array<double, 3> kept_{};  // half width, half height and centre that the tables are for
+  std::array<double, 3> kept_{};  // half width, half height and centre of the present tables
   int width_ = 0, height_ = 0;
   std::vector<float> x_, y_, inverse_length_;
 };

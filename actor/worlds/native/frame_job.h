@@ -8,7 +8,8 @@
 // (i >> 2 & 1), row = (i >> 1 & 1) + 2 * (i >> 3).
 //
 // The kernels include this header with wider instruction sets than the rest of
-// the program: it must hold no functions and include nothing that does.
+// the program. This header must therefore contain no functions and include no header with
+// functions.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +20,7 @@ constexpr int kTileSide = 4, kTilePixels = 16, kTilePixelsLog2 = 4;
 constexpr int kMostLevels = 16, kMostLights = 100;
 constexpr int kNothing = -1;  // id of a pixel that shows the sky
 
-// c + x * X + y * Y, of X and Y relative to the shape's origin.
+// c + x * X + y * Y, with X and Y relative to the shape's origin.
 struct Affine {
   float c, x, y;
 };
@@ -45,7 +46,7 @@ struct Triangle {
   Affine edges[3];  // barycentric coordinates times w
 };
 
-// A geom as the visibility pass needs it. Its pixels get id + face.
+// Data of a geom for the visibility pass. The pixels of the geom get id + face.
 struct Shape {
   ShapeKind kind;
   int id;
@@ -54,12 +55,12 @@ struct Shape {
   Quadric quadric;      // ellipsoid, or the side of a capsule or cylinder
   Quadric caps[2];      // of a capsule: at +z and at -z
   bool inside_side;     // the eye is within the endless cylinder
-  int cap;              // then: which cap it looks at, 0 = +z
+  int cap;              // if inside_side: cap that the eye looks at, 0 = +z
   Affine z;             // z axis times ray
   float z_low, z_high;  // axis coordinate of the ends, relative to the eye
   // Faces of boxes, cylinders and planes: w is the least of `enter` and must
-  // not be below any of `leave`; of planes it must also leave every `inside` at
-  // or above zero.
+  // not be below any of `leave`. Planes are only hit where, in addition, every
+  // `inside` is at least zero.
   int enters, leaves, insides;
   int faces[3];
   Affine enter[3], leave[6], inside[4];
@@ -67,17 +68,16 @@ struct Shape {
   const Triangle* triangle;
 };
 
-// Light in the camera's coordinates. Its colours are in the surfaces'
-// LightColour.
+// Light in the camera's coordinates. The surfaces' LightColour has its colours.
 struct Light {
   bool directional;
-  float direction[3];  // towards the light when directional, else the spot's axis
+  float direction[3];  // towards a directional light; axis of a spot
   float position[3];
   float attenuation[3];
   float cutoff_cosine;  // -1 or less: shines everywhere
   float exponent;
   bool specular;  // any channel
-  bool own_pass;  // added after the sum of the others was limited to full light
+  bool own_pass;  // added after the sum of the other lights was limited to full light
 };
 
 struct LightColour {
@@ -87,9 +87,10 @@ struct LightColour {
 enum NormalKind : int32_t { kFlat, kRound, kRod, kOval, kMeshNormals };
 
 // A texture in memory. A level has the faces of a cube (+x, -x, +y, -y, +z, -z)
-// behind each other. Texels are r | g << 8 | b << 16, rows from t = 0. Each
-// face has a frame of one texel that repeats what is beyond its edges, so it
-// has (height + 2, width + 2) texels.
+// one after another. Texels are r | g << 8 | b << 16, rows from t = 0. Each
+// face has a border of one texel, so it has (height + 2, width + 2) texels. The
+// border repeats the edge of a cube's face, and the opposite edge of another
+// texture.
 struct Texture {
   int levels;
   bool cube;
@@ -99,8 +100,7 @@ struct Texture {
 
 enum TextureMapping : int32_t { kNoTexture, kMap2d, kMapCube };
 
-// The grid on whose vertices a plane is lit. Axes k = 0, 1 are the plane's x
-// and y.
+// Grid of a plane; light is computed at its vertices. Axes k = 0, 1 are the plane's x and y.
 struct PlaneGrid {
   int cells[2];
   float start[2], step[2], inverse_step[2];  // of the second cell
@@ -109,7 +109,7 @@ struct PlaneGrid {
   const float* x;                            // (stride) positions of vertices
   const float* y;                            // (cells[1] + 1)
   float* light[3];                           // (cells[1] + 1, stride); written on demand
-  uint32_t* stamps;  // (cells[1] + 1, stride / kTilePixels): frame that lit it
+  uint32_t* stamps;  // (cells[1] + 1, stride / kTilePixels): frame that lit the block
 };
 
 struct MeshData {
@@ -127,7 +127,7 @@ struct Surface {
   float normal[3];
   float centre[3], axis[3], inverse_radius, half_length;
   float gram[9];  // kOval: normal = gram * (p - centre)
-  float turn[2];  // kFlat: normal x and y by the plane's distance from the eye
+  float turn[2];  // kFlat: normal x and y / distance of the plane from the eye
   float emission[3];
   bool one_light;  // light is the same everywhere: `light`
   float light[3];
@@ -169,20 +169,20 @@ struct View {
 // rises from the plane to the height of the eye. Lengths are in radii of the cylinder.
 struct Haze {
   float inverse_sky;  // 1 / the cylinder's radius, in m
-  bool seen;          // the rest is read only then
+  bool seen;          // the other members are read only if true
   float axes[3][3];   // the plane's x, y and normal: coordinate = axis * (X, Y, 1)
   float elevation;    // of the eye above the plane
   float width;        // difference between the radii of the cylinder and of the cone at the plane
-  float peak;         // share of the way from the eye's height to the plane where it hides all
+  float peak;         // share of the way from the eye's height to the plane at which haze hides all
   float rgb[3];       // 0..255
 };
 
-// Per pixel, tile after tile.
+// Arrays with one value per pixel, tile after tile.
 struct Tiles {
   float* w;
   int32_t* id;
   int32_t* colour;    // r | g << 8 | b << 16
-  int32_t* triangle;  // number in Shape::triangle, where the id is a mesh's
+  int32_t* triangle;  // number in Shape::triangle, if the id belongs to a mesh
 };
 
 struct LightSet {
@@ -195,12 +195,12 @@ struct LightSet {
 struct Kernels {
   const char* name;
   int lanes;
-  // No depth and no id anywhere.
+  // Removes depth and id of all pixels.
   void (*clear)(const View&, const Tiles&);
-  // Writes depth and id where the shape is in front of what is there.
+  // Writes depth and id of the pixels where the shape is nearer than the stored depth.
   void (*see)(const View&, const Shape&, const Tiles&);
-  // Like see, but `behind` gives the depth to compare with and keeps it; other
-  // pixels of `tiles` lose their id.
+  // Like see, but compares with the depth of `behind`, which does not change. Pixels of `tiles`
+  // that do not show the shape lose their id.
   void (*see_over)(const View&, const Shape&, const Tiles& behind, const Tiles& tiles);
   // Colours the pixels with the surface's id.
   void (*shade)(const View&, const LightSet&, const Surface&, const Tiles&);
@@ -208,8 +208,8 @@ struct Kernels {
   void (*blend)(const TileRect&, int tiles_x, float alpha, const Tiles& over, const Tiles&);
   // Colours the pixels without id. Needs view.sky.
   void (*sky)(const View&, const Tiles&);
-  // Puts the sky before what is beyond its cylinder, in colour and depth, then blends the haze.
-  // Needs view.sky.
+  // Writes colour and depth of the sky to the pixels beyond the sky's cylinder, then blends the
+  // haze. Needs view.sky.
   void (*haze)(const View&, const Haze&, const Tiles&);
 };
 

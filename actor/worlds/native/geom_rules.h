@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the engine treats geoms: which are drawn, which are transparent, in which order; and which
-// models and scenes ask for more than can be drawn.
+// The engine's rules for geoms: which geoms are drawn, which are transparent, in which order. Also
+// finds models and scenes with content that cannot be drawn.
 #pragma once
 
 #include <string>
@@ -20,22 +20,22 @@ std::string RefusalOf(const mjModel_& model);
 // the sky are not read.
 void CheckFlags(const mjvScene_& scene);
 
-// Whether the engine shows geoms of this group by default.
+// True if the engine shows geoms of this group by default.
 bool GroupIsShown(int group);
 
 bool Drawable(int type);
 
-// Throws Error (kNonFinite) with the geom's number in the scene when it is not finite.
+// Throws Error (kNonFinite) naming the geom's number in the scene if the geom is not finite.
 void CheckGeom(const mjvGeom_& geom, int number);
 
-// Bodies without extent show nothing.
+// False if the geom has no extent; such a geom is not visible.
 bool HasExtent(const mjvGeom_& geom);
 
-// The eye is behind the geom's z = 0.
+// True if the eye is behind the geom's plane z = 0.
 bool IsBehind(const mjvGeom_& geom, const CameraFrame& frame);
 bool IsTransparent(const mjvGeom_& geom, const CameraFrame& frame);
 
-// The engine sorts transparent geoms by their distance less this.
+// Radius that the engine subtracts from a geom's distance when it sorts transparent geoms.
 double BoundingRadius(const mjvGeom_& geom);
 
 }  // namespace shoal::worlds::native

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light of planes on the vertices of their grids. Included by the sources of the kernels.
+// Light of planes at the vertices of their grids. Included by the sources of the kernels.
 #pragma once
 
 #include "actor/worlds/native/frame_job.h"
@@ -61,8 +61,8 @@ SHOAL_INLINE GridCell FindCell(const PlaneGrid& grid, int axis, F at) {
   return {index, Min(Max((at - left) * inverse, zero), Set(1.0f))};
 }
 
-// Lights the corners of the cells of all lanes in `lanes`. Returns whether that
-// is one cell.
+// Computes the light at the corners of the cells of all lanes in `lanes`. Returns true if all lanes
+// share one cell.
 SHOAL_INLINE bool NeedCells(const LightSet& lights, const Surface& s, M lanes, I x, I y, I cell) {
   alignas(64) int32_t cells[kLanes], xs[kLanes], ys[kLanes];
   Store(cells, cell);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The haze of a scene, for the kernels.
+// Set-up of a scene's haze for the kernels.
 #pragma once
 
 #include "actor/worlds/native/camera_frame.h"
@@ -10,7 +10,7 @@ struct mjvScene_;
 
 namespace shoal::worlds::native {
 
-// A model's haze, as it is set in visual/map and visual/rgba.
+// A model's haze, from visual/map and visual/rgba.
 struct HazeStyle {
   float width = 0;           // 0 = none
   float rgb[3] = {0, 0, 0};  // 0..255
@@ -19,9 +19,9 @@ struct HazeStyle {
   explicit HazeStyle(const mjModel_& model);
 };
 
-// Fills `haze` by the scene's first endless plane. False: there is none. The haze is not seen from
-// below the plane, where the scene's flags turn it off, and where the style has none. The engine
-// draws it only before a sky.
+// Fills `haze` from the scene's first endless plane. False if there is no such plane. The haze is
+// not visible from below the plane, if the scene's flags turn the haze off, or if the style has
+// none. The engine draws haze only in front of a sky.
 bool MakeHaze(const mjvScene_& scene, const CameraFrame& frame, const HazeStyle& style, Haze* haze);
 
 }  // namespace shoal::worlds::native

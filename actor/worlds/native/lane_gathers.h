@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads from one place in an array for each lane. Included by the sources of the kernels.
+// Gathers: each lane reads from its own place in an array. Included by the sources of the kernels.
 #pragma once
 
 #include "actor/worlds/native/lanes.h"

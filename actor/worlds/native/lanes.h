@@ -5,8 +5,8 @@
 // The including source defines SHOAL_LANES. Every operation rounds as IEEE 754
 // says, so a lane's result does not depend on the number of lanes.
 // Multiplication and addition must not be contracted
-// (-ffp-contract=off). Everything here is local to the including source: the
-// same name means other instructions elsewhere.
+// (-ffp-contract=off). Everything here is local to the including source, because the same name
+// stands for other instructions in other sources.
 #pragma once
 
 #include <immintrin.h>
@@ -78,7 +78,7 @@ SHOAL_INLINE F operator/(F a, F b) {
   return {SHOAL_V(_mm_div_ps, _mm256_div_ps, _mm512_div_ps)(a.v, b.v)};
 }
 SHOAL_INLINE F Sqrt(F a) { return {SHOAL_V(_mm_sqrt_ps, _mm256_sqrt_ps, _mm512_sqrt_ps)(a.v)}; }
-// The second of the two when either is not a number.
+// Minimum and maximum. If either argument is not a number, the result is `b`.
 SHOAL_INLINE F Min(F a, F b) {
   return {SHOAL_V(_mm_min_ps, _mm256_min_ps, _mm512_min_ps)(a.v, b.v)};
 }

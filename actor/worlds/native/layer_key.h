@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// All that a picture of geoms that do not move depends on, beside the model.
+// Key of a picture of geoms that do not move: everything that the picture depends on except the
+// model.
 #pragma once
 
 #include <span>

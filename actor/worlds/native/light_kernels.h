@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Light on points of a surface. Included by the sources of the kernels.
 //
-// OpenGL's fixed-function light, as the engine sets it up: local viewer, one side, limited to full
-// light before the texture.
+// OpenGL's fixed-function light with the engine's settings: local viewer, one side, limited to full
+// light before the texture is applied.
 #pragma once
 
 #include "actor/worlds/native/frame_job.h"

@@ -12,8 +12,8 @@ using namespace shoal::worlds::native;
 
 struct MeshPoint {
   Vector normal;
-  F turn_x, turn_y;  // the triangle's plane's change of depth
-  Footprint coords;  // of the texture, where the mesh has its own
+  F turn_x, turn_y;  // change of depth on the plane of the triangle
+  Footprint coords;  // texture coordinates, if the mesh has them
 };
 
 // Interpolates between the corners of each lane's triangle.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The grids into which the engine divides planes. It lights a plane on the
-// grid's vertices and interpolates between them, which shows wherever cells are
-// wide.
+// The grids into which the engine divides planes. The engine computes light at the vertices of a
+// grid and interpolates between the vertices; the interpolation is visible if cells are wide.
 #pragma once
 
 #include <cstdint>

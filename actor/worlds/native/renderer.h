@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws the engine's abstract scenes on a CPU, without OpenGL: quality
-// `native`.
+// Draws the engine's abstract scenes on a CPU, without OpenGL: quality `native`.
 //
-// Planes, spheres, capsules, ellipsoids, cylinders and boxes are cast ray by
-// ray, exactly, so edges are finer than the engine's polygons. Light, materials
-// and textures follow the engine's OpenGL renderer; shadows, reflections and
-// multisampling are left out. Frames are equal to the last bit on all x86-64
-// CPUs, whichever instruction set draws them.
+// Planes, spheres, capsules, ellipsoids, cylinders and boxes are ray cast with exact shapes, so
+// edges are finer than the engine's polygons. Light, materials and textures follow the engine's
+// OpenGL renderer; shadows, reflections and multisampling are left out. Frames are equal to the
+// last bit on all x86-64 CPUs and for all instruction sets.
 //
-// One renderer draws scenes of one model. One thread at a time each; any number
-// of them.
+// One renderer draws scenes of one model. One thread at a time may use a renderer; there may be any
+// number of renderers.
 #pragma once
 
 #include <cstdint>
@@ -24,30 +22,30 @@ namespace shoal::worlds::native {
 enum class InstructionSet { kSse2, kAvx2, kAvx512 };
 
 bool Supported(InstructionSet set);
-// The widest that this CPU has.
+// The widest instruction set that this CPU supports.
 InstructionSet WidestInstructionSet();
 
 class Renderer {
  public:
-  // Copies textures; keeps nothing of `model`. Throws Error (kUsage) when it
+  // Copies textures; does not refer to `model` afterwards. Throws Error (kUsage) if the model
   // cannot be drawn.
   explicit Renderer(const mjModel_& model, InstructionSet set = WidestInstructionSet());
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  // planes (3, H, W) uint8, row 0 = top. The scene is of the renderer's model.
-  // Throws Error (kNonFinite) when the camera or a geom is not finite,
-  // (kRuntime) on a geom that cannot be drawn and on a scene with fog.
+  // Draws a scene of the renderer's model to planes (3, H, W) uint8, row 0 = top. Throws Error
+  // (kNonFinite) if the camera or a geom is not finite, (kRuntime) if a geom cannot be drawn or the
+  // scene has fog.
   void Draw(const mjvScene_& scene, int width, int height, std::span<uint8_t> planes);
 
-  // (H, W): index in scene.geoms of what is in front, transparent or not; -1 =
-  // the sky.
+  // Writes numbers (H, W): index in scene.geoms of the nearest geom, transparent or not; -1 = the
+  // sky.
   void DrawNumbers(const mjvScene_& scene, int width, int height, std::span<int32_t> numbers);
-  // (H, W): depth along the gaze, in m; infinite where only the sky is.
+  // Writes depths (H, W): depth along the viewing direction, in m; infinite for the sky.
   void DrawDepth(const mjvScene_& scene, int width, int height, std::span<float> depths);
 
-  // Draws everything anew each time, for tests.
+  // Discards stored layers, so that the next frame draws everything. For tests.
   void ForgetLayers();
   void KeepLayers(bool keep);
 

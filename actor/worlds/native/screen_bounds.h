@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which tiles of a picture a body in camera coordinates can touch.
+// Bounds on the tiles of a picture that a body in camera coordinates can touch.
 #pragma once
 
 #include <array>
@@ -28,8 +28,8 @@ RayRect BoundEllipsoid(Vector3 centre, const std::array<Vector3, 3>& axes,
 RayRect BoundHull(std::span<const Vector3> points, std::span<const std::array<int, 2>> edges,
                   double near);
 
-// The tiles, within the view, with pixels in the rectangle or up to a hundredth
-// of a pixel outside. False: none.
+// Finds the tiles of the view with pixels in the rectangle or up to a hundredth of a pixel outside.
+// False if there are none.
 bool TilesOf(const RayRect& rect, const CameraFrame& frame, const View& view, TileRect* tiles);
 
 }  // namespace shoal::worlds::native

@@ -27,7 +27,7 @@ SHOAL_INLINE Vector NormalOf(const Surface& s, Vector p) {
   return Scale(Set(1.0f) / Max(Sqrt(Dot(n, n)), Set(1e-20f)), n);
 }
 
-// How the plane that touches the surface turns away from the ray: normal / (normal . ray).
+// Slope of the surface's tangent plane against the ray: normal / (normal . ray).
 SHOAL_INLINE void TurnOf(const Surface& s, Vector n, Vector ray, F depth, F* turn_x, F* turn_y) {
   if (s.normal_kind == kFlat) {
     *turn_x = Set(s.turn[0]) * depth;
@@ -41,9 +41,8 @@ SHOAL_INLINE void TurnOf(const Surface& s, Vector n, Vector ray, F depth, F* tur
   *turn_y = n.y * inverse;
 }
 
-// ray: (X, Y, 1); p = ray / w. The texture's change from pixel to pixel is that
-// on the plane that touches the surface: dp/dX = (e_x - ray * n_x / (n . ray))
-// / w.
+// ray: (X, Y, 1); p = ray / w. The change of the texture coordinates from pixel to pixel is
+// computed on the tangent plane: dp/dX = (e_x - ray * n_x / (n . ray)) / w.
 SHOAL_INLINE Footprint FootprintOf(const View& view, const Surface& s, Vector ray, Vector p,
                                    F turn_x, F turn_y, F depth) {
   const F zero = Set(0.0f);
@@ -84,7 +83,7 @@ SHOAL_INLINE I Pack(Colour c) {
 }
 
 struct Group {
-  M mine;  // lanes of the surface; others hold anything
+  M mine;  // lanes of the surface; values in other lanes are undefined
   F x, y, w, inverse_length;
   I triangle;
 };

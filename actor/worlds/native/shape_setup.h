@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a geom of the engine's abstract scene to a shape that the kernels see.
+// Conversion of a geom of the engine's abstract scene to a shape for the kernels.
 #pragma once
 
 #include <array>
@@ -23,9 +23,8 @@ struct PlacedGeom {
 
 PlacedGeom Place(const mjvGeom_& geom, const CameraFrame& frame);
 
-// Fills `shape` for a plane, sphere, capsule, ellipsoid, cylinder or box; its
-// rect covers at least what can be seen of it. False: nothing of it is in view.
-// CHECK on other types.
+// Fills `shape` for a plane, sphere, capsule, ellipsoid, cylinder or box. The shape's rect covers
+// at least its visible part. False if no part of the geom is in view. CHECK on other types.
 bool MakeShape(const mjvGeom_& geom, const PlacedGeom& placed, const CameraFrame& frame,
                const View& view, int id, Shape* shape);
 

@@ -27,7 +27,7 @@ SHOAL_INLINE I SkyColour(const View& view, M lanes, F x, F y) {
   return Pack(LookUpCube(*view.sky, lanes, f));
 }
 
-// Calls visit(x, y, at) for each group of lanes: its rays and its place in the tiles.
+// Calls visit(x, y, at) for each group of lanes, with the group's rays and index in the tiles.
 template <typename Visit>
 SHOAL_INLINE void ForEachRay(const View& view, const Visit& visit) {
   for (int row = 0; row < view.tiles_y; ++row) {

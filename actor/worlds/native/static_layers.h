@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finished pictures of what does not move, to draw the rest over.
+// Cache of finished pictures of geoms that do not move. Other geoms are drawn over these layers.
 //
-// A layer is found by everything it depends on, so that a picture is the same
-// with and without it. Worlds that share a renderer and differ in a goal each
-// get their own.
+// The key of a layer contains everything that the layer depends on, so pictures are the same with
+// and without the cache. Worlds that share a renderer and have different goals have different
+// layers.
 #pragma once
 
 #include <cstdint>
@@ -16,12 +16,13 @@ namespace shoal::worlds::native {
 
 class StaticLayers {
  public:
-  // Words of whatever a layer depends on.
+  // Words of everything that a layer depends on.
   using Key = std::vector<uint32_t>;
 
   // The layer with this key; null = none.
   const TileBuffer* Find(const Key& key) const;
-  // True when this key was missed lately: it is worth a layer.
+  // Records a miss of this key. True if the key was also missed recently; the caller then stores a
+  // layer.
   bool Miss(const Key& key);
   void Store(const Key& key, const TileBuffer& picture, const View& view);
 
@@ -32,7 +33,7 @@ class StaticLayers {
   };
 
   std::vector<std::unique_ptr<Layer>> layers_;
-  size_t next_ = 0;  // to be replaced
+  size_t next_ = 0;  // index of the next layer to replace
   std::vector<uint64_t> missed_;
   size_t next_missed_ = 0;
 };

@@ -17,18 +17,16 @@ struct mjvScene_;
 
 namespace shoal::worlds::native {
 
-// A scene's lights in camera coordinates, in an order in which those that cast
-// shadows come last: the engine adds each of them in a pass of its own. Their
-// shadows are left out.
+// A scene's lights in camera coordinates. Lights that cast shadows are last, because the engine
+// adds each of these in a separate pass. Shadows are left out.
 class SceneLights {
  public:
   SceneLights(const mjvScene_& scene, const CameraFrame& frame);
 
   LightSet set() const { return {static_cast<int>(lights_.size()), lights_.data()}; }
-  // The light that each light gives to a geom's material is added to the end of
-  // `colours`.
+  // Appends to `colours` the colours of each light on the geom's material.
   void AddColours(const mjvGeom_& geom, std::vector<LightColour>* colours) const;
-  // The same for all points and normals: without lights the engine has a little
+  // Ambient light of all points and normals. If a scene has no lights, the engine adds a little
   // ambient light.
   float global_ambient() const { return lights_.empty() ? 0.3f : 0.0f; }
   std::span<const Light> lights() const { return lights_; }
@@ -38,7 +36,7 @@ class SceneLights {
   std::vector<LightColour> plain_;  // of a white material
 };
 
-// Data that the surfaces of a frame refer to; must live as long as they do.
+// Data that the surfaces of a frame refer to; must outlive the surfaces.
 struct SurfaceSources {
   const SceneLights* lights;
   std::span<const Texture* const> textures;  // of the model, by number
@@ -47,8 +45,8 @@ struct SurfaceSources {
   uint32_t stamp;            // of the frame
 };
 
-// Appends the surfaces of a shape, one for each colour rule. `colours` are the
-// geom's, one for each light; must stay where they are.
+// Appends the surfaces of a shape, one for each colour rule. `colours`: colours of the geom, one
+// for each light; their memory must not move.
 void AddSurfaces(const mjvGeom_& geom, const PlacedGeom& placed, const Shape& shape,
                  const SurfaceSources& sources, LightColour* colours, bool transparent,
                  std::vector<Surface>* surfaces);

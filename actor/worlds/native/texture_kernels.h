@@ -48,7 +48,7 @@ SHOAL_INLINE Texels Mix(Texels a, Texels b, I weight) {
   return {Lerp16(a.red_blue, b.red_blue, weight), Lerp16(a.green, b.green, weight)};
 }
 
-// The texels at `upper_left`, on its right and below both.
+// Interpolates between the four texels whose upper left one is at `upper_left`.
 SHOAL_INLINE Texels Bilinear(const int32_t* texels, int stride, I upper_left, F fx, F fy) {
   const I wx = Weight16(fx), wy = Weight16(fy);
   const Quads quads = GatherQuads(texels, stride, upper_left);
@@ -72,8 +72,8 @@ SHOAL_INLINE Texels Sample2d(const Texture& texture, int level, F s, F t) {
                   y - ToFloat(row));
 }
 
-// u and v in [0, 1] on a face of a cube, clamped to its edges: faces are framed
-// by their own edges.
+// Samples a face of a cube at u and v in [0, 1], clamped to the face's edges: each face has a frame
+// that repeats its own edges.
 SHOAL_INLINE Texels SampleCube(const Texture& texture, int level, I face, F u, F v) {
   const int size = texture.width[level], stride = size + 2;
   const auto scaled = [size](F at) {
@@ -97,8 +97,8 @@ SHOAL_INLINE void ChooseLevel(F rho, int levels, I* level, F* weight) {
   *weight = Select((Set(int32_t{0}) > exponent) | (*level == last), Set(0.0f), next);
 }
 
-// Samples the lanes of `lanes` at their own levels; others get any value. Lanes
-// of one group rarely differ in their level.
+// Samples the lanes of `lanes` at their own levels; other lanes get undefined values. Lanes of one
+// group rarely differ in their level.
 template <typename Sample>
 SHOAL_INLINE Colour SampleLevels(M lanes, I level, F weight, const Sample& sample) {
   alignas(64) int32_t levels[kLanes];
@@ -138,8 +138,8 @@ SHOAL_INLINE Colour LookUp2d(const Texture& texture, M lanes, const Footprint& f
       });
 }
 
-// The face that a direction meets and the axes on it: u = right / major, v =
-// down / major, with OpenGL's orientation of the faces.
+// The face that a direction meets and the axes on the face: u = right / major, v = down / major,
+// with OpenGL's orientation of the faces.
 struct CubeAxes {
   M x, y;  // the major axis; neither = z
   F sign_u, sign_v;

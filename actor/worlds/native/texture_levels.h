@@ -13,9 +13,8 @@ namespace shoal::worlds::native {
 // Owns the texels that view() points to; movable, not copyable.
 class TextureLevels {
  public:
-  // rgb: rows of (width, height) texels, one face after another when `cube`:
-  // six faces of width x width, or one that is used for all six. CHECK on
-  // sizes.
+  // `rgb`: rows of (width, height) texels. If `cube`: six faces of width x width, one after
+  // another, or one face that is used for all six. CHECK on sizes.
   TextureLevels(std::span<const uint8_t> rgb, int width, int height, bool cube);
   TextureLevels(TextureLevels&&) = default;
   TextureLevels& operator=(TextureLevels&&) = default;

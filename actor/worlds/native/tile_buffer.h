@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture in the making: depth, id and colour of each pixel, tile after tile.
+// Buffer of an unfinished picture: depth, id and colour of each pixel, tile after tile.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace shoal::worlds::native {
 class TileBuffer {
  public:
   void Resize(const View& view);
-  // Same size.
+  // Copies `other`, which has the same size.
   void CopyFrom(const TileBuffer& other);
   Tiles tiles() { return {w_.data(), id_.data(), colour_.data(), triangle_.data()}; }
   size_t bytes() const { return w_.size() * (sizeof(float) + 3 * sizeof(int32_t)); }

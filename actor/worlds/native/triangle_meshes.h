@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes, their convex hulls and height fields of a model as the engine draws them: triangles with
-// a normal at each corner.
+// Triangles with a normal at each corner, for a model's meshes, their convex hulls and height
+// fields, like in the engine's renderer.
 #pragma once
 
 #include <map>
@@ -26,7 +26,7 @@ struct TriangleMesh {
 
 class TriangleMeshes {
  public:
-  // Copies what visible geoms of the model use.
+  // Copies the meshes and height fields that visible geoms of the model use.
   explicit TriangleMeshes(const mjModel_& model);
 
   // The triangles of a mesh or height field of the scene; null = not one of the model's.
@@ -37,8 +37,8 @@ class TriangleMeshes {
   std::map<int, TriangleMesh> hfields_;  // by mjvGeom::dataid
 };
 
-// Fills `shape` and the triangles of the mesh that face the eye and may be in view; they must stay
-// where they are as long as the shape. False: none.
+// Fills `shape`, and the triangles of the mesh that face the eye and may be in view. The memory of
+// the triangles must not move during the shape's lifetime. False if there are no such triangles.
 bool MakeTriangles(const TriangleMesh& mesh, const PlacedGeom& placed, const CameraFrame& frame,
                    const View& view, int id, std::vector<Triangle>* triangles, Shape* shape);
 

@@ -18,7 +18,7 @@ using namespace shoal::worlds::native;
 // share a face would otherwise flicker.
 constexpr float kCoincident = 1.00001f;
 constexpr float kNever = 3e38f;
-// How far, of its size, a triangle reaches beyond its edges.
+// Share of its size by which a triangle is extended beyond its edges.
 constexpr float kCrack = 1e-5f;
 
 SHOAL_INLINE F Eval(const Affine& f, F x, F y) { return Set(f.c) + Set(f.x) * x + Set(f.y) * y; }
@@ -28,7 +28,7 @@ SHOAL_INLINE F Discriminant(const Quadric& q, F x, F y) {
          y * (Set(q.dy) + Set(q.dyy) * y);
 }
 
-// A shape seen on a ray: valid where `hit`, with w and the id.
+// Hits of a shape, one per lane: w and id are valid in the lanes of `hit`.
 struct Hit {
   M hit;
   F w;
@@ -40,7 +40,7 @@ SHOAL_INLINE Hit SeeEllipsoid(const Shape& s, F x, F y) {
   return {d >= Set(0.0f), Eval(s.quadric.b, x, y) + Sqrt(Max(d, Set(0.0f))), Set(s.id)};
 }
 
-// The side where the ray enters between the ends, else the cap beyond.
+// Hits the side if the ray enters it between the ends, otherwise the cap.
 SHOAL_INLINE Hit SeeCapsule(const Shape& s, F x, F y) {
   const F zero = Set(0.0f);
   const F side_d = Discriminant(s.quadric, x, y);
@@ -48,7 +48,7 @@ SHOAL_INLINE Hit SeeCapsule(const Shape& s, F x, F y) {
   const F z = Eval(s.z, x, y);
   M above = z > Set(s.z_high) * side, below = Set(s.z_low) * side > z;
   M seen = side_d >= zero;
-  if (s.inside_side) {  // the side is seen from within, that is not at all
+  if (s.inside_side) {  // the side is not visible from within
     const M all = zero >= zero, none = zero > zero;
     above = s.cap == 0 ? all : none;
     below = s.cap == 0 ? none : all;
@@ -146,7 +146,7 @@ SHOAL_INLINE void SeeTriangles(const View& view, const Shape& s, const Tiles& be
           const F x = Load(view.ray_x + column * kTilePixels + i) - origin_x;
           const F y = Load(view.ray_y + row * kTilePixels + i) - origin_y;
           const F w = Eval(triangle.w, x, y);
-          // Neighbours round their common edge apart.
+          // Neighbours round their common edge differently.
           const F edge = w * Set(-kCrack);
           M seen = (Eval(triangle.edges[0], x, y) >= edge) &
                    (Eval(triangle.edges[1], x, y) >= edge) &
@@ -154,8 +154,7 @@ SHOAL_INLINE void SeeTriangles(const View& view, const Shape& s, const Tiles& be
           if (!Any(seen)) continue;
           const F before = Load(behind.w + tile + i);
           seen = seen & (w * Set(kCoincident) >= before) & (w >= w_far) & (w_near >= w);
-          // Triangles of one transparent mesh hide each other, unlike the
-          // engine's.
+          // Triangles of one transparent mesh hide each other; the engine's do not.
           if constexpr (kOver) {
             const M first = Load(tiles.id + tile + i) == Set(int32_t{kNothing});
             seen = seen & (first | (w >= Load(tiles.w + tile + i)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every task as every camera sees it, in both qualities, in one picture with labels.
+// Contact sheet: one labelled picture that shows every task from every camera in both qualities.
 #pragma once
 
 #include <cstdint>
@@ -17,17 +17,17 @@ struct ContactSheetRequest {
 
 // One picture of the sheet, before it is drawn.
 struct ContactSheetTile {
-  std::vector<std::string> tasks;  // that look alike because they share their physics half
+  std::vector<std::string> tasks;  // tasks with the same physics half, which look alike
   std::string camera, quality;
 };
 
 using ContactSheetRows = std::vector<std::vector<ContactSheetTile>>;
 
-// Everything there is: one row per physics half, in the order of registration; within a row the
-// cameras, each in quality fast and then reference.
+// Plans the tiles of all tasks: one row per physics half, in the order of registration. A row has
+// the cameras, each in quality fast and then reference.
 ContactSheetRows PlanContactSheet();
 
-// Draws it. Throws Error (kUsage) on a side that is not 16..1024.
+// Draws the sheet. Throws Error (kUsage) on a side that is not 16..1024.
 Picture DrawContactSheet(const ContactSheetRows& rows, const ContactSheetRequest& request);
 
 }  // namespace shoal::worlds

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The range of each number of a task while it was played, and the numbers that never changed. A
-// constant number is most often one that the physics half does not write, or writes elsewhere.
+// Measured range of each number of a task during play, and the numbers that never changed. The
+// usual cause of a constant number is that the physics half does not write it, or writes it to
+// another place.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -40,11 +41,11 @@ struct ConstantNumber {
   double value = 0;
 };
 
-// Those that had one value in all observations, of which there were more than one. A desired goal
-// stays as it is within an episode: its numbers count from two episodes on.
+// The numbers that had the same value in all observations, if there were at least two. Desired
+// goals are constant within an episode, so their numbers are included from two episodes on.
 std::vector<ConstantNumber> ConstantNumbers(const tasks::Task& task, const RangeMeter& meter);
 
-// A line of warning for each, for people.
+// The warnings as text, one line for each number.
 std::string ToText(const std::vector<ConstantNumber>& constant, int observations);
 nlohmann::ordered_json ToJson(const std::vector<ConstantNumber>& constant);
 

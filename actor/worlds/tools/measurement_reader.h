@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// JSON files of measurements, read strictly: what is missing or ill-typed is named by the path of
-// keys that leads to it.
+// Strict reader of JSON files with measurements. Errors name a missing or ill-typed value by its
+// path of keys.
 #pragma once
 
 #include <algorithm>
@@ -14,17 +14,18 @@
 
 namespace shoal::worlds {
 
-// Throws Error when the file cannot be read or is not JSON.
+// Reads a file. Throws Error if the file cannot be read or is not JSON.
 nlohmann::json ReadJson(const std::filesystem::path& path);
 
-// One JSON object of a file. Borrows both. All functions throw Error naming the file and the key.
+// Reader of one JSON object of a file. Borrows object and file name. All functions throw Error
+// naming the file and the key.
 class MeasurementReader {
  public:
   MeasurementReader(const std::filesystem::path& file, const nlohmann::json& object,
                     std::string where);
 
   Error Fault(const std::string& what, const std::string& problem) const;
-  // "reset.obs" for the key "obs" of the object that "reset" leads to.
+  // Path of a key for messages: "reset.obs" for the key "obs" of the object at "reset".
   std::string Path(const std::string& key) const;
 
   bool Has(const std::string& key) const { return object_.contains(key); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An environment that shows every number of its task and no pixels: what the tools look into.
+// Environment for tools: exposes every number of its task and has no pixels.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,8 @@ namespace shoal::worlds {
 
 class OpenEnvironment {
  public:
-  // `model`: path of another MJCF file; empty = our own. The task outlives the environment.
+  // `model`: path of another MJCF file; empty = the built-in model. The task outlives the
+  // environment.
   OpenEnvironment(const tasks::Task& task, const std::string& model);
 
   const tasks::Task& task() const { return task_; }
@@ -24,7 +25,7 @@ class OpenEnvironment {
   void Reset(uint64_t stream_key);
   StepResult Step(std::span<const float> action);
 
-  // observation, achieved goal, desired goal, one after another, of the last reset or step.
+  // Observation, achieved goal and desired goal of the last reset or step, concatenated.
   std::span<const float> numbers() const { return numbers_; }
   std::span<const float> achieved_goal() const;
   std::span<const float> desired_goal() const;
@@ -35,8 +36,8 @@ class OpenEnvironment {
   std::vector<float> numbers_;
 };
 
-// Plays uniform random actions for as many episodes as `env_steps` take; calls `on_reset` after
-// every reset and `on_step` after every step. Equal seeds, equal numbers.
+// Plays `env_steps` steps of uniform random actions, in as many episodes as necessary. Calls
+// `on_reset` after every reset and `on_step` after every step. Equal seeds give equal numbers.
 void PlayRandomSteps(OpenEnvironment* environment, int env_steps, int64_t seed,
                      const std::function<void()>& on_reset,
                      const std::function<void(const StepResult&)>& on_step);

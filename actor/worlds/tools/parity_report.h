@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far our physics is from a measurement: what a replay found, for people and programs.
+// Report on the deviation of Shoal's physics from a measurement, for people and programs.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -16,7 +16,7 @@ struct Deviation {
   std::string unit;      // of the difference: "m"; empty = dimensionless or mixed
   double largest = 0;
   int at_step = 0;       // env step where it occurs, 0 = reset
-  double tolerance = 0;  // what it may be; 0 = for information, not judged
+  double tolerance = 0;  // largest allowed value; 0 = for information, not judged
 
   bool Passed() const { return tolerance == 0 || largest <= tolerance; }
 };
@@ -24,30 +24,30 @@ struct Deviation {
 struct ReplayReport {
   std::string file, environment, sequence;
   std::string physics;  // "mujoco2", "mujoco3"
-  std::string model;    // the user's file, empty = ours
+  std::string model;    // the user's file; empty = the built-in model
   int steps = 0;
-  double tolerance = 0;  // of this sequence; m where there is a goal
+  double tolerance = 0;  // of this sequence; in m for tasks with a goal
   std::vector<Deviation> deviations;
-  // Steps where the sparse reward or the success flag differ although the reference's distance is
-  // further from the threshold than the tolerance.
+  // Steps with a different sparse reward or success flag although the reference's distance differs
+  // from the threshold by more than the tolerance.
   int reward_mismatches = 0, success_mismatches = 0;
-  int contact_mismatches = 0;      // reset and steps with another number of contacts; not judged
-  int termination_mismatches = 0;  // steps that terminate in one and not in the other
-  // First env step whose object is not judged any more, nor what follows from it (Slide, from the
-  // puck's first hit on); 0 = judged to the end.
+  int contact_mismatches = 0;  // reset and steps with a different number of contacts; not judged
+  int termination_mismatches = 0;  // steps that terminate only in Shoal or only in the reference
+  // First env step from which the object, and quantities that depend on the object, are not judged
+  // (Slide: the puck's first hit); 0 = judged to the end.
   int chaotic_from = 0;
   bool passed = false;
 
-  // Notes the difference of two vectors of one size at an env step.
+  // Records the difference of two vectors of the same size at an env step.
   void Compare(const std::string& quantity, const std::string& unit, double judged_by,
                std::span<const double> ours, std::span<const double> theirs, int step);
-  // Sets `passed` from everything else.
+  // Sets `passed` from the other members.
   void Judge();
 };
 
 // Schema shoal-parity-1.
 nlohmann::ordered_json ToJson(const ReplayReport& report);
-// For people: a line per quantity, the verdict last.
+// The report as text: one line per quantity, then the verdict.
 std::string ToText(const ReplayReport& report);
 
 }  // namespace shoal::worlds

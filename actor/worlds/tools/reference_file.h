@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recorded trajectory of the original Fetch environments, to compare our physics with: what the
-// format vrl-ref-1 holds of it.
+// A recorded trajectory of the original Fetch environments in the format vrl-ref-1, for comparison
+// with Shoal's physics.
 #pragma once
 
 #include <array>
@@ -36,7 +36,7 @@ struct ReferenceTrajectory {
   std::string sequence;     // name of the action sequence: "random0"
   bool has_object = false;
   std::array<double, 3> initial_grip{};
-  double table_height = 0;            // of the object's site after the set-up; 0 without object
+  double table_height = 0;            // z of the object's site after the set-up; 0 without object
   std::array<double, 2> object_xy{};  // at the reset; 0 without object
   std::array<double, 3> desired_goal{};
   std::vector<std::string> joint_names;
@@ -44,9 +44,9 @@ struct ReferenceTrajectory {
   std::vector<ReferenceStep> steps;
 };
 
-// Throws Error naming the file and the key: unreadable, not JSON, another format, an environment
-// that cannot be replayed (naming those that can), a key missing, ill-typed, of the wrong length,
-// not finite or (actions) outside [-1, 1].
+// Reads a trajectory. Throws Error naming the file and the key if the file is unreadable, is not
+// JSON or has another format; if the environment cannot be replayed (naming the supported ones); or
+// if a value is missing, ill-typed, of the wrong length, not finite or (actions) outside [-1, 1].
 ReferenceTrajectory ReadReference(const std::filesystem::path& path);
 
 }  // namespace shoal::worlds

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One picture of a task, to look at.
+// Rendering of one picture of a task, for people.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,11 @@
 
 namespace shoal::worlds {
 
-// (H, W, 3) uint8, row 0 = top, interleaved RGB: as image::WritePng takes it.
+// (H, W, 3) uint8, row 0 = top, interleaved RGB: the format of image::WritePng.
 struct Picture {
   int width = 0, height = 0;
   std::vector<uint8_t> pixels;
-  std::string camera = "";  // where one is known
+  std::string camera = "";  // name of the camera; empty = unknown
 };
 
 struct RenderRequest {
@@ -23,16 +23,16 @@ struct RenderRequest {
   int width = 480, height = 480;
   std::string quality = "reference";               // fast | native | reference
   PainterOutput output = PainterOutput::kColours;  // others in quality native alone
-  bool goal = false;  // the picture of the goal reached, of observation.goal_mode = image
+  bool goal = false;  // draws the goal picture of observation.goal_mode = image
   int env_steps = 0;  // uniform random actions before the picture, at most an episode's
   int64_t seed = 1;   // of the goal and of the actions
-  std::string model;  // path of another MJCF file; empty = our own
+  std::string model;  // path of another MJCF file; empty = the built-in model
 };
 
-// Throws Error (kUsage) on an unknown task, camera or quality, an output that the quality does not
-// have, a size that is not 1..4096 and more
-// env steps than an episode has, or a goal picture of a task without, or after steps; (kRuntime)
-// when the task terminates the episode before.
+// Draws the picture. Throws Error (kUsage) on an unknown task, camera or quality, an output that
+// the quality does not have, a size that is not 1..4096, more env steps than an episode has, a goal
+// picture of a task that has none, or a goal picture after steps. Throws Error (kRuntime) if the
+// task terminates the episode earlier.
 Picture RenderTask(const RenderRequest& request);
 
 }  // namespace shoal::worlds

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Are the rewards of a task what they are said to be? Plays random actions and compares, number by
-// number: the reward of each step, what the goal half computes for the goals of its record, and the
-// written formula; then the last two again for goals that were put in later, as hindsight does.
+// Check of a task's rewards. Plays random actions and compares for each step: the reward of the
+// step, the goal half's reward for the goals of the step's record, and the documented formula. Then
+// compares the last two for substituted goals, as hindsight uses them.
 #pragma once
 
 #include <cstdint>
@@ -17,13 +17,14 @@ namespace shoal::worlds {
 
 struct RewardCheckRequest {
   std::string task;
-  std::string model = "";  // path of another MJCF file; empty = our own
+  std::string model = "";  // path of another MJCF file; empty = the built-in model
   int env_steps = 500;
-  int relabels = 4;  // other goals per step: achieved ones of later steps of its episode
+  int relabels = 4;  // other goals per step: achieved goals of later steps of the episode
   int64_t seed = 1;
 };
 
-// Every comparison is for equality of float32 numbers. Tasks without goals have only `repeated`.
+// Result of the check. All comparisons test float32 numbers for equality. For tasks without goals
+// only `repeated` is computed.
 struct RewardCheck {
   std::string task;
   bool has_goals = false;
@@ -37,7 +38,7 @@ struct RewardCheck {
   int relabelled_formula = 0;
   int success_formula = 0;  // step's success flag, distance < threshold
   int repeated = 0;         // step's reward, the same step of a second rollout
-  // A warning, no mismatch: numbers that never changed, in so many observations.
+  // Warning, not a mismatch: numbers that never changed, and the number of observations.
   std::vector<ConstantNumber> constant{};
   int observations = 0;
 
@@ -46,23 +47,23 @@ struct RewardCheck {
   }
 };
 
-// Goals of one step as its record carries them, and what the step gave.
+// Goals of one step from its record, and the result of the step.
 struct RewardSample {
   std::vector<float> achieved, desired;
-  int episode = 0;  // of the samples, in order
+  int episode = 0;  // number of the episode within the samples
   StepResult result;
 };
 
-// Everything but `repeated`, over samples that were played; see RewardCheckRequest for `relabels`.
+// Computes everything except `repeated` from played samples. `relabels`: see RewardCheckRequest.
 RewardCheck CompareRewards(const tasks::Task& task, const std::vector<RewardSample>& samples,
                            int relabels, int64_t seed);
 
-// Throws Error (kUsage) on an unknown task, listing those there are.
+// Runs the check. Throws Error (kUsage) on an unknown task, listing the known ones.
 RewardCheck CheckRewards(const RewardCheckRequest& request);
 
 // Schema shoal-reward-check-1.
 nlohmann::ordered_json ToJson(const RewardCheck& check);
-// For people, the verdict last.
+// The result as text, with the verdict last.
 std::string ToText(const RewardCheck& check);
 
 }  // namespace shoal::worlds

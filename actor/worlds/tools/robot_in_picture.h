@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Is the robot in the picture, or does a broken renderer draw an empty one? Draws the same scene
-// with the robot's geoms and without them and compares.
+// Check that pictures show the robot, to detect a broken renderer. Compares pictures of the same
+// scene with and without the robot's geoms.
 #pragma once
 
 #include <string>
@@ -14,9 +14,9 @@ namespace shoal::worlds {
 // Share of the pixels that differ. CHECK on pictures of different size.
 double ChangedShare(const Picture& a, const Picture& b);
 
-// Share of a camera's pixels that show the robot, 0..1: those that change when the geoms of all
-// bodies whose name starts with `prefix` become transparent. The world is as before afterwards.
-// Throws Error when there is no such camera, no such body, or no rendering.
+// Share of a camera's pixels that show the robot, 0..1: the pixels that change when the geoms of
+// all bodies whose name starts with `prefix` become transparent. Restores the world. Throws Error
+// if there is no such camera or body, or if rendering is not available.
 double RobotShare(World* world, const std::string& prefix, const std::string& camera,
                   const ObservationConfig& observation);
 

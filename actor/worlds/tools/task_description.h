@@ -21,7 +21,7 @@ namespace shoal::worlds {
 struct AxisProbe {
   int axis = 0;
   double command = 0;  // -1 or 1
-  int env_steps = 0;   // fewer than asked for where the episode ended
+  int env_steps = 0;   // fewer than requested if the episode ended
   std::vector<double> change;
 };
 
@@ -30,28 +30,28 @@ struct TaskDescription {
   double env_step_seconds = 0;  // simulated, with the task's own action repeat
   std::string fingerprint;      // of the model
   std::vector<CameraView> cameras;
-  int random_env_steps = 0;  // that the ranges were seen in
+  int random_env_steps = 0;  // env steps in which the ranges were measured
   // One per number of the observation, the achieved and the desired goal.
   std::vector<MeasuredRange> observation, achieved_goal, desired_goal;
-  std::vector<ConstantNumber> constant;  // of these
-  int observations = 0;                  // that the ranges were seen in
+  std::vector<ConstantNumber> constant;  // numbers that never changed
+  int observations = 0;                  // observations in which the ranges were measured
   std::vector<AxisProbe> probes;         // two per axis: -1, then 1
 };
 
 struct DescribeRequest {
   std::string task;
-  std::string model = "";      // path of another MJCF file; empty = our own
-  int probe_env_steps = 5;     // of one command
-  int random_env_steps = 500;  // of uniform random actions, over as many episodes as that takes
+  std::string model = "";      // path of another MJCF file; empty = the built-in model
+  int probe_env_steps = 5;     // env steps per command
+  int random_env_steps = 500;  // env steps of uniform random actions, in any number of episodes
   int64_t seed = 1;
 };
 
-// Throws Error (kUsage) on an unknown task, listing those there are.
+// Describes a task. Throws Error (kUsage) on an unknown task, listing the known ones.
 TaskDescription DescribeTask(const DescribeRequest& request);
 
 // Schema shoal-env-1. Infinite bounds are null.
 nlohmann::ordered_json ToJson(const TaskDescription& description);
-// For people.
+// The description as text.
 std::string ToText(const TaskDescription& description);
 
 }  // namespace shoal::worlds
