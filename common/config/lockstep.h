@@ -11,7 +11,7 @@
 //
 // Both sides must obey these rules for a run to be exact:
 // - A vector step makes E step records. The reset record of an episode is made at the start of the
-//   vector step that follows the former episode's end, never after the last step of a phase.
+//   vector step that follows the end of the episode before, never after the last step of a phase.
 // - The actor sends everything before it waits.
 // - The replay serves a request once SampleRequest::after_steps step records are stored. Request u
 //   belongs to update u.

@@ -36,7 +36,7 @@ enum class ChunkFate {
   kDealtWith,   // every record of the chunk is stored or counted
   kAhead,       // dropped: records before the chunk have not arrived yet
   kSuperseded,  // the actor has a newer session: the process that sent the chunk is gone
-  kFuture,      // the session number lies in the future
+  kFuture,      // the session number is of a time in the future
   kWrongSpec,   // the chunk has another observation spec
   kMalformed,   // length or sequences of the chunk are inconsistent
   kTableFull,   // the ledger has no room for another session

@@ -30,7 +30,7 @@ class ReadoutModule final : public Module {
   // Returns y (B, L) for the trunk's current outputs.
   Array Forward();
   // Computes the gradients of the parameters and of the trunk's outputs from dL/dy (B, L). The next
-  // Backward of the trunk's module uses the latter gradient.
+  // Backward of the trunk's module uses the gradient of the outputs.
   void Backward(Array gradient);
 
  private:

@@ -26,7 +26,7 @@ class AgentState {
   void Add(nn::Adam* optimiser, const std::string& group);
   void Add(uint64_t* counter, const std::string& name);
   // Adds any other state by a function that writes it and a function that reads it. Like Restore,
-  // the latter throws Error.
+  // `read` throws Error.
   using Write = std::function<void(nn::TensorMap*)>;
   using Read = std::function<void(const nn::TensorMap&, const std::string& source)>;
   void Add(Write write, Read read) { parts_.push_back({std::move(write), std::move(read)}); }
