@@ -29,19 +29,11 @@ constexpr seconds kTryAgain{3};
 constexpr int kMostSessions = 40;
 
 // A fault of these kinds may end sessions with an error while it lasts and for so long after it:
-// a process cannot write, or processes do not hear of one another for longer than they wait, or
-// the ring is not what it was. A full disk ends only a session that begins on it.
+// a process cannot write, or processes do not hear of one another for longer than they wait. So may
+// a ring that was cut off, from that moment on. A full disk ends only a session that begins on it.
 constexpr seconds kAftermath{60};
 bool MayEndSessions(const Fault& fault) {
-  switch (fault.kind) {
-    case Kind::kFailingDisk:
-    case Kind::kPartition:
-      return true;
-    case Kind::kKill:
-      return fault.text == kThenCutRing;
-    default:
-      return false;
-  }
+  return fault.kind == Kind::kFailingDisk || fault.kind == Kind::kPartition;
 }
 
 bool Ended(const std::string& exit) { return exit == "budget" || exit == "target"; }
@@ -168,6 +160,7 @@ Begin RunOperator::Prepare() {
       std::filesystem::remove(ring, error);
     } else if (!error) {
       std::filesystem::resize_file(ring, bytes / 2, error);
+      trouble_until_ = std::max(trouble_until_, Now() + kAftermath);
     }
   }
   return NextBegin(fault.text == kThenOverwrite ? Begin::kOverwrite : Begin::kResume);
