@@ -87,7 +87,9 @@ std::optional<CoreSplit::Move> CoreSplit::Decide(const SplitCounts& counted,
                         .servers = counted.servers_cpu_seconds / counted.env_steps,
                         .further_thread = further};
   const Split next = BestSplit(costs, limits_);
-  const double gain = PaceOf(costs, next) / best.pace;
+  // The model has each side work without a break. The waits that keep the measured pace below the
+  // model's would be in the other division, too.
+  const double gain = PaceOf(costs, next) / std::max(best.pace, PaceOf(costs, now_));
   if (may_try && gain >= kGain && !Tried(next)) {
     return Move{next, fmt::format("{} cores: {} from now on, {} before; an update took {:.1f} ms, "
                                   "an env step {:.2f} ms: {:.2f} times the env steps expected",

@@ -40,13 +40,15 @@ class ModelRun {
   // An update's time as a multiple of the model's, by the number of threads.
   std::function<double(int)> update_factor = [](int) { return 1.0; };
   double starts_learning_at = 0;
+  double idle = 0;  // share of the time in which both sides wait, in every division
 
  private:
   double UpdatesNow() const {
     return UpdatesPerSecond(costs_, split_.threads) / update_factor(split_.threads);
   }
   double PaceNow() const {
-    return std::min(split_.actors / costs_.env_step, UpdatesNow() / costs_.updates_per_env_step);
+    return (1 - idle) *
+           std::min(split_.actors / costs_.env_step, UpdatesNow() / costs_.updates_per_env_step);
   }
   void Advance() {
     const double pace = PaceNow(), updates = pace * costs_.updates_per_env_step;
@@ -96,6 +98,17 @@ TEST(CoreSplit, AGoodFirstGuessStays) {
   const Split guess = BestSplit(Flagship(), kSixteen);
   CoreSplit division(kSixteen, guess);
   ModelRun run(Flagship(), guess);
+  EXPECT_THAT(run.Run(division, 60), IsEmpty());
+  EXPECT_TRUE(division.done());
+}
+
+// The model has no such waits: beside the measured pace, another division would always seem faster.
+TEST(CoreSplit, WaitsThatEveryDivisionHasPromiseNoGain) {
+  Split guess = BestSplit(Flagship(), kSixteen);
+  ++guess.actors;
+  CoreSplit division(kSixteen, guess);
+  ModelRun run(Flagship(), guess);
+  run.idle = 0.2;
   EXPECT_THAT(run.Run(division, 60), IsEmpty());
   EXPECT_TRUE(division.done());
 }
