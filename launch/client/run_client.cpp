@@ -10,6 +10,7 @@
 #include "common/base/saturating_cast.h"
 #include "common/base/stop.h"
 #include "common/link/role.h"
+#include "launch/watch/metrics_view.h"
 
 namespace shoal::launch {
 namespace {
@@ -23,10 +24,7 @@ void ThrowIfInterrupted() {
 
 std::optional<double> FigureOfCoordinator(const RunViewMessage& view, std::string_view name) {
   for (const MetricsMessage& process : view.processes) {
-    if (process.role != link::RoleName(link::Role::kCoordinator)) continue;
-    for (size_t i = 0; i < process.names.size() && i < process.values.size(); ++i) {
-      if (process.names[i] == name) return process.values[i];
-    }
+    if (process.role == link::RoleName(link::Role::kCoordinator)) return FigureOf(process, name);
   }
   return std::nullopt;
 }

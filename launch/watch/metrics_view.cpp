@@ -16,14 +16,20 @@ std::optional<double> FindValue(const Values& values, std::string_view name) {
 
 }  // namespace
 
+std::optional<double> FigureOf(const MetricsMessage& report, std::string_view name) {
+  for (size_t i = 0; i < report.names.size() && i < report.values.size(); ++i) {
+    if (report.names[i] == name) return report.values[i];
+  }
+  return std::nullopt;
+}
+
 // Whether the report is of another process than those before: on several hosts, or in containers, a
 // successor may well have the number of its predecessor, but it began later.
 bool MetricsView::IsSuccessor(const MetricsMessage& message, const Process& before) {
   if (message.pid != before.newest.pid || message.host != before.newest.host) return true;
-  const auto uptime = std::ranges::find(message.names, kUptime);
-  const auto i = static_cast<size_t>(uptime - message.names.begin());
+  const auto uptime = FigureOf(message, kUptime);
   const auto uptime_before = FindValue(before.values, kUptime);
-  return i < message.values.size() && uptime_before && message.values[i] < *uptime_before;
+  return uptime && uptime_before && *uptime < *uptime_before;
 }
 
 void MetricsView::OnMessage(const MetricsMessage& message, SteadyTime now) {

@@ -16,6 +16,9 @@
 
 namespace shoal::launch {
 
+// The figure of that name in a report; empty if the report does not contain the figure.
+std::optional<double> FigureOf(const MetricsMessage& report, std::string_view name);
+
 // One thread. Holds one report per process id, and one final value per counter of the dead
 // processes.
 class MetricsView {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "launch/watch/metrics_view.h"
 #include "launch/watch/run_figures.h"
 #include "launch/watch/terminal_block.h"
 
@@ -24,10 +25,8 @@ struct Cell {
 };
 
 std::optional<double> Get(const Process& process, std::string_view name) {
-  for (size_t i = 0; i < process.names.size() && i < process.values.size(); ++i) {
-    if (process.names[i] == name && std::isfinite(process.values[i])) return process.values[i];
-  }
-  return std::nullopt;
+  const auto figure = FigureOf(process, name);
+  return figure && std::isfinite(*figure) ? figure : std::nullopt;
 }
 
 Cell Text(const std::string& text) { return {text.empty() ? "-" : text}; }
