@@ -65,49 +65,50 @@ if [[ -z $slim || $osmesa == installed ]]; then
 else
   grep -q "WARN  opengl" "$work/check" || { cat "$work/check"; fail "check does not miss OSMesa"; }
 fi
-keys="--set env_steps=2000 --set eval.interval=1000 --set eval.episodes=2 --set eval.final_episodes=4"
-run "'$bundle/bin/shoal' train --preset fetch-reach-state $keys --set run_name=state" >"$work/state" 2>&1 ||
-  { cat "$work/state"; fail "training from state"; }
-run "'$bundle/bin/shoal' eval state --episodes 3" >/dev/null || fail "evaluation"
-# The web page at its address, a plot where gnuplot is installed, manual pages and completions.
-inside "cd '$place'; timeout 60 '$bundle/bin/shoal' web --port 0 >web 2>&1 & echo \$!" >"$work/web.pid"
-for _ in {1..100}; do ! grep -qs "http://" "$target/web" || break; sleep 0.1; done
-port=$(sed -n 's#.*http://127\.0\.0\.1:\([0-9]*\).*#\1#p' "$target/web")
-[[ -n $port ]] || { cat "$target/web"; fail "no address of the web page"; }
-exec 3<>"/dev/tcp/127.0.0.1/$port"
-printf 'GET / HTTP/1.1\r\nHost: 127.0.0.1:%s\r\nConnection: close\r\n\r\n' "$port" >&3
-page=$(cat <&3)
-exec 3>&-
-kill "$(<"$work/web.pid")"
-[[ $page == "HTTP/1.1 200"* && $page == *dygraph* ]] || { head -c 500 <<<"$page"; fail "the web page"; }
-if inside "command -v gnuplot" >/dev/null; then
-  run "'$bundle/bin/shoal' plot state" >/dev/null || fail "a plot"
-  [[ -s $target/curves.png ]] || fail "an empty plot"
-else
-  if run "'$bundle/bin/shoal' plot state" >"$work/plot" 2>&1; then fail "a plot without gnuplot"; fi
-  grep -q gnuplot "$work/plot" || { cat "$work/plot"; fail "no word of gnuplot"; }
-fi
-share=$target/$name/share
-for page in man1/shoal{,-actor,-learner,-replay}.1 man5/shoal-configuration.5; do
-  zgrep -q '^\.TH' "$share/man/$page.gz" || fail "no manual page $page"
-done
-bash -c 'source "$1" && complete -p shoal' completion "$share/bash-completion/completions/shoal" \
-  >/dev/null || fail "no completion of bash"
-for file in zsh/vendor-completions/_shoal fish/vendor_completions.d/shoal.fish; do
-  grep -q eval "$share/$file" || fail "no completion $file"
-done
-# Another host: a second copy of the bundle, in a folder of its own, behind a shell.
-mkdir -p "$target/other host"
-cp -r "$target/$name" "$target/other host/"
-cat >"$target/hosts.json" <<END
+# A slim bundle differs in what it leaves out: the rest is tried in the full one.
+if [[ -z $slim ]]; then
+  keys="--set env_steps=2000 --set eval.interval=1000 --set eval.episodes=2 --set eval.final_episodes=4"
+  run "'$bundle/bin/shoal' train --preset fetch-reach-state $keys --set run_name=state" >"$work/state" 2>&1 ||
+    { cat "$work/state"; fail "training from state"; }
+  run "'$bundle/bin/shoal' eval state --episodes 3" >/dev/null || fail "evaluation"
+  # The web page at its address, a plot where gnuplot is installed, manual pages and completions.
+  inside "cd '$place'; timeout 60 '$bundle/bin/shoal' web --port 0 >web 2>&1 & echo \$!" >"$work/web.pid"
+  for _ in {1..100}; do ! grep -qs "http://" "$target/web" || break; sleep 0.1; done
+  port=$(sed -n 's#.*http://127\.0\.0\.1:\([0-9]*\).*#\1#p' "$target/web")
+  [[ -n $port ]] || { cat "$target/web"; fail "no address of the web page"; }
+  exec 3<>"/dev/tcp/127.0.0.1/$port"
+  printf 'GET / HTTP/1.1\r\nHost: 127.0.0.1:%s\r\nConnection: close\r\n\r\n' "$port" >&3
+  page=$(cat <&3)
+  exec 3>&-
+  kill "$(<"$work/web.pid")"
+  [[ $page == "HTTP/1.1 200"* && $page == *dygraph* ]] || { head -c 500 <<<"$page"; fail "the web page"; }
+  if inside "command -v gnuplot" >/dev/null; then
+    run "'$bundle/bin/shoal' plot state" >/dev/null || fail "a plot"
+    [[ -s $target/curves.png ]] || fail "an empty plot"
+  else
+    if run "'$bundle/bin/shoal' plot state" >"$work/plot" 2>&1; then fail "a plot without gnuplot"; fi
+    grep -q gnuplot "$work/plot" || { cat "$work/plot"; fail "no word of gnuplot"; }
+  fi
+  share=$target/$name/share
+  for page in man1/shoal{,-actor,-learner,-replay}.1 man5/shoal-configuration.5; do
+    zgrep -q '^\.TH' "$share/man/$page.gz" || fail "no manual page $page"
+  done
+  bash -c 'source "$1" && complete -p shoal' completion "$share/bash-completion/completions/shoal" \
+    >/dev/null || fail "no completion of bash"
+  for file in zsh/vendor-completions/_shoal fish/vendor_completions.d/shoal.fish; do
+    grep -q eval "$share/$file" || fail "no completion $file"
+  done
+  # Another host: a second copy of the bundle, in a folder of its own, behind a shell.
+  mkdir -p "$target/other host"
+  cp -r "$target/$name" "$target/other host/"
+  cat >"$target/hosts.json" <<END
 {"schema": "shoal-hosts-1", "servers": {"address": "127.0.0.1", "actors": 1},
  "hosts": [{"name": "other", "actors": 1, "ssh": ["env", "-i", "PATH=/usr/bin:/bin", "sh", "-c"],
             "programs": "$place/other host/$name/bin", "folder": "$place/other host/runs"}]}
 END
-run "'$bundle/bin/shoal' train --preset fetch-reach-state $keys --set run_name=hosts --hosts hosts.json" \
-  >"$work/hosts" 2>&1 || { cat "$work/hosts"; fail "training on two hosts"; }
-grep -q "actor x2" "$work/hosts" || { cat "$work/hosts"; fail "no actor on the other host"; }
-if [[ -z $slim ]]; then
+  run "'$bundle/bin/shoal' train --preset fetch-reach-state $keys --set run_name=hosts --hosts hosts.json" \
+    >"$work/hosts" 2>&1 || { cat "$work/hosts"; fail "training on two hosts"; }
+  grep -q "actor x2" "$work/hosts" || { cat "$work/hosts"; fail "no actor on the other host"; }
   pixels="--preset fetch-reach-fast --set run_name=pixels --set env_steps=3000 --set eval.interval=3000"
   pixels+=" --set eval.episodes=2 --set eval.final_episodes=4 --set observation.quality=fast"
   # Meanwhile: the libraries that the processes of the run have mapped.
@@ -126,12 +127,12 @@ if [[ -z $slim ]]; then
   if grep -v seen "$target/maps" | head -3 | grep .; then fail "libraries of the system are used"; fi
   run "'$bundle/bin/shoal' film pixels" >/dev/null || fail "a film"
 else
-  if run "'$bundle/bin/shoal' film state" >"$work/film" 2>&1; then fail "a slim bundle made a film"; fi
-  grep -q "this is a slim bundle" "$work/film" || { cat "$work/film"; fail "no word of what is left out"; }
   pixels="--preset fetch-reach-fast --set env_steps=2000 --set eval.interval=1000 --set eval.episodes=2"
   pixels+=" --set eval.final_episodes=4"
   run "'$bundle/bin/shoal' train $pixels --set run_name=native --set observation.quality=native" \
     >"$work/native" 2>&1 || { cat "$work/native"; fail "training from pixels in quality native"; }
+  if run "'$bundle/bin/shoal' film native" >"$work/film" 2>&1; then fail "a slim bundle made a film"; fi
+  grep -q "this is a slim bundle" "$work/film" || { cat "$work/film"; fail "no word of what is left out"; }
 fi
 
 # One line and an exit code for what cannot work.
