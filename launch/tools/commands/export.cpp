@@ -23,7 +23,7 @@ struct ExportOptions {
   uint64_t seed = 1;
 };
 
-// Pictures take a plain evaluator long: an eighth of a second to two each.
+// The plain evaluator is slow on pictures: an eighth of a second to two seconds each.
 constexpr int kPictures = 8, kVectors = 100;
 
 // Observations on which the exported policy is compared.
@@ -69,7 +69,7 @@ int Export(const ExportOptions& options) {
   const fs::path checkpoint = FindCheckpoint(options.checkpoint).checkpoint;
   const policy::CheckpointPolicy policy = policy::ReadCheckpointPolicy(checkpoint);
   const Sets sets = DrawSets(policy, checkpoint, options.seed);
-  // Everything is made before anything is written.
+  // Make all exports before any file is written.
   std::optional<OnnxExport> onnx;
   std::optional<Sb3File> sb3;
   if (!options.onnx.empty()) onnx = ExportOnnx(policy, sets.sets);

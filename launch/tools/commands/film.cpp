@@ -22,7 +22,7 @@ struct FilmOptions {
   CheckpointWords checkpoint;
   std::string output, quality;
   bool across = false, tensorboard = false;
-  int episodes = 0;  // 0: kEpisodes, or kEpisodesAcross of each checkpoint
+  int episodes = 0;  // 0: kEpisodes, or kEpisodesAcross for each checkpoint
   int64_t seed = 1;
 };
 
@@ -55,8 +55,8 @@ FilmOrder OrderOf(const FilmOptions& options) {
   return order;
 }
 
-// A folder of its own: TensorBoard follows the newest file of a folder, and the run's may still
-// grow.
+// Writes to a separate folder: TensorBoard follows the newest file of a folder, and the run's file
+// may still grow.
 void WriteStrips(const fs::path& run, const std::vector<CheckpointStrip>& strips) {
   tensorboard::EventWriter events(run / kTensorBoardFolder / "film");
   for (const CheckpointStrip& strip : strips) {

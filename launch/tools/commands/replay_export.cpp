@@ -23,7 +23,7 @@ struct EpisodesOptions {
   bool last = false;
 };
 
-// A ring belongs to the run in whose folder it lies: the run's configuration says what it holds.
+// A ring belongs to the run of its folder, whose configuration describes the records.
 EpisodeExport ExportSubject(const EpisodesOptions& options) {
   std::error_code error;
   const bool is_ring = fs::is_regular_file(options.source, error);

@@ -34,7 +34,7 @@ struct CompareOptions {
 struct PlotOptions {
   SubjectOptions subjects;
   std::string axis = "env-steps";
-  std::vector<std::string> figures;  // empty = all that there are
+  std::vector<std::string> figures;  // empty = all figures of the runs
   std::vector<std::string> outputs;
   std::string title;
 };

@@ -14,7 +14,7 @@
 namespace shoal::launch {
 namespace {
 
-constexpr std::chrono::milliseconds kLook{100};  // between looks at stop signals
+constexpr std::chrono::milliseconds kLook{100};  // interval between checks for stop signals
 constexpr int kLooksToTend = 20;
 
 int Web(const WebOptions& options) {

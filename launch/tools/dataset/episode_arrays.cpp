@@ -24,7 +24,7 @@ class Episode {
 
   uint64_t count() const { return count_; }  // T + 1
   const RecordHeader& Header(uint64_t i) const { return RecordLayout::Header(At(i)); }
-  // Floats range.first .. of every record's vector.
+  // The floats of `range` of every record's vector.
   std::vector<float> Vectors(const ObservationSpec::Range& range) const {
     std::vector<float> values;
     for (uint64_t i = 0; i < count_; ++i) {
@@ -58,7 +58,7 @@ class Episode {
       flags.push_back((Header(i).flags & flag) != 0 ? 1 : 0);
     return flags;
   }
-  // A number of the header of each record from `first` on.
+  // One number of the header of each record from `first` on.
   std::vector<float> Numbers(float RecordHeader::*number, uint64_t first) const {
     std::vector<float> numbers;
     for (uint64_t i = first; i < count_; ++i) numbers.push_back(Header(i).*number);

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A dataset is replaced as a whole; a metadata.json of anything else is not.
+// A dataset is replaced as a whole, but a metadata.json without a dataset is refused.
 void CheckOutput(const fs::path& output, const fs::path& metadata) {
   CheckWritable(output);
   std::error_code error;
@@ -26,7 +26,7 @@ void CheckOutput(const fs::path& output, const fs::path& metadata) {
   }
 }
 
-// Which of the whole episodes are asked for.
+// Returns the requested ones of the whole episodes.
 std::vector<std::vector<uint64_t>> Chosen(const EpisodeExport& asked,
                                           std::vector<std::vector<uint64_t>> whole) {
   if (asked.episodes == 0 || asked.episodes >= whole.size()) return whole;

@@ -21,7 +21,7 @@
 namespace shoal::launch {
 namespace {
 
-constexpr unsigned kCompression = 1;  // of deflate's 9: pictures shrink tenfold at the first
+constexpr unsigned kCompression = 1;  // deflate level, 1 to 9: level 1 shrinks pictures tenfold
 
 // Reason of a failed call: the system's, if there is one ("No space left on device"), else the
 // message of the library's innermost function.
@@ -40,7 +40,7 @@ std::string Reason() {
   return reason.empty() ? "the HDF5 library gives no reason" : reason;
 }
 
-// An identifier of the library and how it is closed.
+// An identifier of the library and the function that closes it.
 class Handle {
  public:
   Handle() = default;
@@ -69,7 +69,7 @@ class Handle {
 struct Hdf5File::Library {
   explicit Library(std::filesystem::path final_path)
       : path(std::move(final_path)), temporary(path.string() + ".tmp-" + std::to_string(getpid())) {
-    // Without it the library would try once more, at the program's end, to write to a full disk.
+    // Otherwise the library would try to write to a full disk once more at the program's end.
     H5dont_atexit();
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     links = Own(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
@@ -80,7 +80,7 @@ struct Hdf5File::Library {
       Require(H5Tenum_insert(flag.get(), name, &value));
     }
     const Handle access = Own(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    // Groups of a few names cost a tenth of what they did before version 1.8.
+    // Groups of a few names need a tenth of the bytes that they need in older formats.
     Require(H5Pset_libver_bounds(access.get(), H5F_LIBVER_V18, H5F_LIBVER_LATEST));
     file = Own(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose);
   }
@@ -109,7 +109,7 @@ struct Hdf5File::Library {
                                   creation.get(), H5P_DEFAULT),
                        H5Dclose);
     Require(H5Dwrite(array.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
-    if (!array.Close()) Fail(Reason());  // compressed bytes are written now
+    if (!array.Close()) Fail(Reason());  // closing writes the compressed bytes
   }
 
   const std::filesystem::path path, temporary;

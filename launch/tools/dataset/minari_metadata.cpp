@@ -17,7 +17,7 @@ namespace {
 // The version of Minari's layout.
 constexpr char kMinariVersion[] = "0.5.4";
 
-// `value` as a nested list of this shape: Gymnasium's spaces have their bounds number by number.
+// `value` as a nested list of this shape, because Gymnasium's spaces list a bound for each number.
 std::string Filled(std::span<const int> shape, std::string_view value) {
   if (shape.empty()) return std::string(value);
   const std::string inner = Filled(shape.subspan(1), value);
@@ -26,7 +26,7 @@ std::string Filled(std::span<const int> shape, std::string_view value) {
   return list + "]";
 }
 
-// Put together here: a bound may be Infinity, which Python reads and JSON does not know.
+// Formatted by hand, because a bound may be Infinity, which Python reads but JSON lacks.
 std::string Box(const std::vector<int>& shape, std::string_view type, std::string_view low,
                 std::string_view high) {
   return fmt::format(R"({{"type": "Box", "dtype": "{}", "shape": {}, "low": {}, "high": {}}})",
@@ -48,7 +48,7 @@ std::string ObservationSpace(const ObservationSpec& spec) {
   return fmt::format(R"({{"type": "Dict", "subspaces": {{{}}}}})", spaces);
 }
 
-// Minari's ids know letters, digits, - and _.
+// Minari's ids allow only letters, digits, - and _.
 std::string DatasetId(std::string run) {
   const auto foreign = [](unsigned char c) { return std::isalnum(c) == 0 && c != '-' && c != '_'; };
   std::ranges::replace_if(run, foreign, '-');

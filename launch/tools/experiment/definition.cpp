@@ -37,7 +37,8 @@ bool IsFileName(const std::string& text) {
   return !text.empty() && text[0] != '.' && text[0] != '-' && std::ranges::all_of(text, allowed);
 }
 
-// An integer of at least 0 that fits; text gives another kind of number than C++ does.
+// An integer from 0 to the largest int64. Parsed text has another number type than values made in
+// C++.
 std::optional<int64_t> NaturalNumber(const ordered_json& value) {
   if (!value.is_number_integer()) return std::nullopt;
   if (value.is_number_unsigned() &&
@@ -48,7 +49,7 @@ std::optional<int64_t> NaturalNumber(const ordered_json& value) {
   return number >= 0 ? std::optional(number) : std::nullopt;
 }
 
-// Reads the members of one JSON object and refuses those it was not asked for.
+// Reads the members of one JSON object and refuses members that no call has asked for.
 class Members {
  public:
   Members(const ordered_json& object, std::string source)
@@ -71,7 +72,8 @@ class Members {
     if (!value->is_string()) Refuse(name, *value, "a string");
     return value->get<std::string>();
   }
-  // Keys by their present names, so that definitions of several versions can be compared.
+  // Returns keys under their present names, so that definitions of different versions can be
+  // compared.
   ordered_json Keys(const std::string& name) {
     const ordered_json* value = Find(name);
     ordered_json keys = ordered_json::object();
@@ -90,7 +92,7 @@ class Members {
                            const char* expected) const {
     throw UsageError("{}: {} = {}: expected {}", source_, name, value.dump(), expected);
   }
-  // After every member there is has been asked for.
+  // Call it after all known members have been asked for.
   void RefuseOthers() const {
     for (const auto& [name, value] : object_.items()) {
       if (std::ranges::find(known_, name) == known_.end()) {
@@ -150,7 +152,7 @@ std::vector<std::string> ReadTransfer(Members& members) {
   return tasks;
 }
 
-// {"learner.batch": 8} as {"learner": {"batch": 8}}: the form ApplyJson takes.
+// Converts {"learner.batch": 8} to {"learner": {"batch": 8}}, the form that ApplyJson takes.
 json Nested(const ordered_json& set, const std::string& source) {
   json nested = json::object();
   for (const auto& [key, value] : set.items()) {
@@ -170,7 +172,7 @@ json Nested(const ordered_json& set, const std::string& source) {
   return nested;
 }
 
-// `holder` has keys as its member "set", or none.
+// Prints notes about former names of keys. `holder` may have keys in its member "set".
 void NoteFormerNames(const ordered_json& holder) {
   const auto set = holder.find("set");
   if (set == holder.end()) return;

@@ -27,10 +27,10 @@ using std::chrono::milliseconds;
 constexpr char kFolderSchema[] = "shoal-experiment-folder-1";
 constexpr char kFile[] = "experiment.json";
 constexpr char kLockFile[] = ".lock";
-// That a task waits for the command which has submitted it.
+// Time that a task waits for the command that has submitted it.
 constexpr std::chrono::seconds kSubmission{60};
 
-// Whether the file may be left by a command that was killed before it had written experiment.json.
+// True if a command that was killed before it wrote experiment.json may have left the file.
 bool IsLeftover(const fs::path& file) {
   const std::string name = file.filename();
   return name == kLockFile || name.starts_with(std::string(kFile) + ".tmp-");
@@ -44,12 +44,12 @@ bool HoldsOnlyLeftovers(const fs::path& folder) {
   return true;
 }
 
-// In whatever order the keys are written.
+// The order of the keys does not matter.
 bool SameKeys(const ordered_json& a, const ordered_json& b) {
   return nlohmann::json(a) == nlohmann::json(b);
 }
 
-// The first part of a definition that must not change and did; empty if there is none.
+// Describes the first forbidden change of a definition; empty if there is none.
 std::string Difference(const Definition& stored, const Definition& asked) {
   if (asked.name != stored.name) {
     return fmt::format("its name is '{}', not '{}'", stored.name, asked.name);
@@ -92,7 +92,7 @@ void Write(const StoredExperiment& experiment) {
   WriteFileAtomically(experiment.folder / kFile, object.dump(2) + "\n");
 }
 
-// The seed of a run folder "ARM-sSEED" of the arm.
+// The seed of a run folder "ARM-sSEED" of this arm.
 std::optional<int64_t> SeedOf(const std::string& name, const std::string& arm) {
   const std::string start = arm + "-s";
   if (!name.starts_with(start)) return std::nullopt;
@@ -189,7 +189,7 @@ StoredExperiment ReadExperiment(const fs::path& folder) {
 
 namespace {
 
-// The experiment as the folder holds it; empty where it is still to be made.
+// Reads the experiment in the folder; empty if the folder has none yet.
 std::optional<StoredExperiment> ReadIfSame(const fs::path& folder, const Definition& definition,
                                            const std::string& source) {
   if (!IsExperiment(folder)) return std::nullopt;
@@ -206,8 +206,8 @@ std::optional<StoredExperiment> ReadIfSame(const fs::path& folder, const Definit
 
 namespace {
 
-// The base of a new experiment. Of an environment of Python its keys are completed, and what
-// follows from its spaces is taken, as `shoal train` does.
+// The base of a new experiment. For a Python environment, completes keys and derives others from
+// its spaces, as `shoal train` does.
 Config MakeBase(const Definition& definition, const std::string& source) {
   Config base = ResolveBase(definition, source);
   if (base.env.id.empty()) return base;
@@ -234,7 +234,8 @@ ExperimentPlan PlanExperiment(const fs::path& folder, const Definition& definiti
     throw UsageError("'{}' holds something else than an experiment (no {}): not used",
                      folder.string(), kFile);
   } else {
-    // Not as one braced value: g++ 12 destroys members that it has not made when one throws.
+    // No braced initialisation: if a member throws, g++ 12 destroys members that it has not
+    // constructed.
     plan.experiment.folder = fs::weakly_canonical(fs::absolute(folder));
     plan.experiment.base = MakeBase(definition, source);
     plan.experiment.created = UtcTimestamp();
@@ -250,7 +251,7 @@ ExperimentPlan PlanExperiment(const fs::path& folder, const Definition& definiti
 ExperimentFolder::ExperimentFolder(const ExperimentPlan& plan) : experiment_(plan.experiment) {
   MakeFolders(experiment_.folder);
   lock_ = LockOrThrow(experiment_.folder, Holding::kAlone, milliseconds(0));
-  // Again: between the plan and the lock another command may have been here.
+  // Check again: another command may have made the experiment between the plan and the lock.
   const auto stored = ReadIfSame(experiment_.folder, experiment_.definition, plan.source);
   if (stored) experiment_.base = stored->base;
   if (stored) experiment_.created = stored->created;

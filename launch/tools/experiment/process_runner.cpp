@@ -36,8 +36,7 @@ std::string ReasonIn(const fs::path& log) {
   return line.starts_with(prefix) ? line.substr(prefix.size()) : line;
 }
 
-// A folder that was taken by a run which was killed before it had begun: nothing is in it that
-// anybody would miss.
+// Removes the folder of a run that was killed before it began. Such a folder has no results.
 void RemoveUnbegun(const fs::path& run) {
   std::error_code error;
   if (!fs::exists(run, error) || IsRun(run)) return;
@@ -56,7 +55,7 @@ std::vector<int> OwnCores() {
       if (CPU_ISSET(static_cast<size_t>(core), &set)) cores.push_back(core);
     }
   }
-  // The quota may grant less time than there are CPUs.
+  // The CPU quota may allow fewer cores than the affinity mask.
   const auto usable = static_cast<size_t>(UsableCores());
   if (cores.size() > usable) cores.resize(usable);
   return cores;

@@ -37,7 +37,7 @@ void Say(const std::string& line) {
   std::fflush(stderr);
 }
 
-// Null where nothing has come of it yet.
+// Null if the run has no outcome yet.
 const RunOutcome* OutcomeOf(const ExperimentOutcome& outcome, const ExperimentRun& run) {
   for (const RunOutcome& other : outcome.arms[run.arm].runs) {
     if (other.run.name == run.name) return &other;
@@ -45,7 +45,7 @@ const RunOutcome* OutcomeOf(const ExperimentOutcome& outcome, const ExperimentRu
   return nullptr;
 }
 
-// Prints the line for tuners.
+// Prints the JSON line that hyperparameter tuners read.
 void PrintJsonLine(const ExperimentOutcome& outcome, const ExperimentRun& run,
                    const StandingReport& report) {
   const RunOutcome* found = OutcomeOf(outcome, run);
@@ -60,7 +60,7 @@ void PrintJsonLine(const ExperimentOutcome& outcome, const ExperimentRun& run,
   std::fflush(stdout);
 }
 
-// A line a minute for each run under way.
+// Prints one line a minute for each active run.
 class ProgressLines {
  public:
   explicit ProgressLines(const StoredExperiment& experiment) : experiment_(experiment) {}
@@ -99,7 +99,7 @@ void CheckObservations(const ExperimentPlan& plan) {
   }
 }
 
-// False when a stop was asked for before the last one.
+// Returns false if a stop was requested before the last baseline.
 bool MeasureBaselines(const StoredExperiment& experiment) {
   for (const JudgedWorld& world : JudgedWorlds(experiment)) {
     if (!HasBaselines(world.config)) {
@@ -122,7 +122,7 @@ ExperimentOutcome Summarize(const StoredExperiment& experiment) {
   return outcome;
 }
 
-// Throws Error (usage) naming the runs there are.
+// Throws Error (usage) that names the existing runs.
 ExperimentRun RunNamed(const StoredExperiment& experiment, const std::string& name) {
   if (const auto run = experiment.RunNamed(name)) return *run;
   std::vector<std::string> names;
@@ -131,7 +131,7 @@ ExperimentRun RunNamed(const StoredExperiment& experiment, const std::string& na
                    experiment.folder.string(), name, fmt::join(names, ", "));
 }
 
-// Throws Error (usage): an arm that the definition does not have.
+// Throws Error (usage) if the definition lacks one of the arms.
 void CheckArms(const Definition& definition, const std::vector<std::string>& asked) {
   std::vector<std::string> names;
   for (const Arm& arm : definition.arms) names.push_back(arm.name);
@@ -143,7 +143,7 @@ void CheckArms(const Definition& definition, const std::vector<std::string>& ask
   }
 }
 
-// Those of the arms and seeds that were asked for.
+// Returns the runs of the requested arms and seeds.
 std::vector<ExperimentRun> RunsAskedFor(const StoredExperiment& experiment,
                                         const ExperimentOptions& options) {
   const Definition& definition = experiment.definition;
@@ -166,7 +166,7 @@ int ExitCode(const ExperimentOutcome& outcome, const std::vector<ExperimentRun>&
   return 0;
 }
 
-// Does the runs on this machine. `side_by_side`: as ProcessRunner takes it.
+// Does the runs on this machine. `side_by_side`: see ProcessRunner.
 ExperimentOutcome DoRunsHere(const StoredExperiment& experiment,
                              const std::vector<ExperimentRun>& runs, const QueueTerms& terms,
                              int side_by_side) {
@@ -214,7 +214,7 @@ int RunExperiment(const ExperimentOptions& options) {
   const fs::path folder =
       options.out.empty() ? ExperimentsIn().dir / definition.name : fs::path(options.out);
   const int jobs = options.jobs.value_or(1);
-  if (!options.slurm) SplitCores(OwnCores(), jobs);  // refuses too many
+  if (!options.slurm) SplitCores(OwnCores(), jobs);  // throws if there are too few cores
   const ExperimentPlan plan = PlanExperiment(folder, definition, source);
   CheckObservations(plan);
   if (options.dry_run) {

@@ -64,7 +64,7 @@ void RunLog::Write(const RunEnding& ending) const {
                {"problem", ending.problem}}));
 }
 
-// A line that a kill cut short is ended first: it must not swallow this one.
+// If a kill cut the last line short, ends that line first, so that the new line stays separate.
 void RunLog::Append(const std::string& line) const {
   const auto lock = FileLock::Take(file_, Holding::kAlone, kOthersWrite);
   if (!lock) throw RuntimeError("cannot write '{}': others hold it", file_.string());
@@ -93,7 +93,7 @@ std::map<std::string, LoggedRun> RunLog::Read() const {
     const std::string line = text.substr(begin, end - begin);
     begin = end + 1;
     const json event = ParseBoundedJson<json>(line);
-    if (event.is_discarded()) continue;  // cut short by a kill, and possibly ended since
+    if (event.is_discarded()) continue;  // a line cut short by a kill
     try {
       Count(event, &runs);
     } catch (const json::exception& e) {

@@ -23,7 +23,7 @@ class Queue {
         slots_(static_cast<size_t>(terms.jobs)) {}
 
   void Do() {
-    int answered = 0;  // stops that have been passed on
+    int answered = 0;  // stop requests that have been passed on
     while (true) {
       CollectEnded();
       if (hooks_.stops() == 0) FillSlots();
@@ -54,8 +54,8 @@ class Queue {
     }
   }
 
-  // Takes one run from the queue and begins it in the slot, or is done with it. False when there is
-  // none that can be begun now.
+  // Takes one run from the queue and starts it in the slot, or settles it without a start. Returns
+  // false if no run can start now.
   bool StartNext(size_t slot) {
     for (auto run = waiting_.begin(); run != waiting_.end(); ++run) {
       const StandingReport report = keeper_.Standing(*run);
@@ -114,9 +114,9 @@ class Queue {
   const QueueHooks& hooks_;
   std::deque<ExperimentRun> waiting_;
   const size_t count_;
-  std::vector<std::optional<ExperimentRun>> slots_;  // what each is doing
-  std::set<std::string> put_off_;                    // runs of which that was said
-  std::vector<std::string> seen_;                    // names in the order they were come to
+  std::vector<std::optional<ExperimentRun>> slots_;  // the run of each slot
+  std::set<std::string> put_off_;                    // runs whose delay was reported
+  std::vector<std::string> seen_;                    // names of runs, in order
 };
 
 }  // namespace

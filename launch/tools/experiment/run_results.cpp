@@ -30,7 +30,7 @@ void ReadMeta(const json& meta, RunResults* results) {
   if (meta.contains("commits")) {
     meta.at("commits").get_to(results->commits);
   } else {
-    results->commits = {TextOrEmpty(meta, "commit")};  // a run of an older build
+    results->commits = {TextOrEmpty(meta, "commit")};  // runs of older builds have one commit
   }
   if (const auto machine = meta.find("machine"); machine != meta.end()) {
     results->cpu = TextOrEmpty(*machine, "cpu");
@@ -38,7 +38,7 @@ void ReadMeta(const json& meta, RunResults* results) {
   }
 }
 
-// eval/ of a run by the starts of its files' names, sorted.
+// Reads the files in eval/ of a run whose names begin with `start`, sorted by name.
 std::vector<EvaluationFigures> ReadAll(const fs::path& run, const std::string& start) {
   std::vector<fs::path> files;
   std::error_code error;
@@ -78,7 +78,7 @@ RunResults ReadRunResults(const fs::path& run) {
       throw RuntimeError("{}: {}", meta.string(), e.what());
     }
   }
-  results.curve = ReadAll(run, kEvaluationPrefix);  // the names are padded: by env steps
+  results.curve = ReadAll(run, kEvaluationPrefix);  // padded names: the order is that of env steps
   results.transfer = ReadAll(run, kTransferPrefix);
   if (const fs::path final = run / kEvaluationFolder / kFinalEvaluationFile; fs::exists(final)) {
     results.final = ReadEvaluationFigures(final);

@@ -26,7 +26,8 @@ ordered_json MeanJson(const std::vector<double>& values, const std::optional<Int
           {"failed", failed}};
 }
 
-// Digits behind the point, 0 to 2: two of the interval's half width, four in all without one.
+// Digits after the point, 0 to 2: two significant digits of the interval's half width, or four
+// significant digits of the mean if there is no interval.
 int Digits(double mean, const std::optional<Interval>& interval) {
   const double half = interval ? (interval->high - interval->low) / 2 : 0;
   const double size = half > 0 ? half : std::abs(mean);

@@ -25,17 +25,17 @@ constexpr std::chrono::seconds kSlurmAnswers{60};
 
 struct Answer {
   bool good = false;
-  std::string said{};  // the last line
+  std::string said{};  // last line of the output
 };
 
-// A program of Slurm's, wherever the user's PATH has it.
+// Runs a program of Slurm, found through the user's PATH.
 Answer Ask(std::vector<std::string> command) {
   command.insert(command.begin(), "/usr/bin/env");
   const ScratchFolder scratch;
   ProcessSpec spec;
   spec.role = command[1];
   spec.output = scratch.path() / "said";
-  spec.errors = scratch.path() / "errors";  // a warning is no answer
+  spec.errors = scratch.path() / "errors";  // keeps warnings out of the answer
   spec.command = std::move(command);
   const auto status = RunToEnd(spec, kSlurmAnswers, StopRequested);
   if (!status) return {.good = false, .said = "no answer within a minute"};
@@ -44,7 +44,7 @@ Answer Ask(std::vector<std::string> command) {
   return {.good = false, .said = why.empty() ? LastLine(spec.output) : why};
 }
 
-// Null where none was submitted yet.
+// Null if no array was submitted yet.
 ordered_json LastArray(const fs::path& file) {
   std::error_code error;
   if (!fs::exists(file, error)) return nullptr;
@@ -56,13 +56,13 @@ ordered_json LastArray(const fs::path& file) {
   return array;
 }
 
-// A task that was submitted twice would wait for its twin's end in a place of its own.
+// A task that was submitted twice would occupy a place of its own while it waits for the first one.
 void RefuseWhileQueued(const fs::path& folder) {
   const ordered_json last = LastArray(folder / "slurm.json");
   if (last.is_null()) return;
   const auto job = last["job"].get<std::string>();
   const Answer queue = Ask({"squeue", "--noheader", "--format=%i", "--jobs=" + job});
-  if (queue.good && !queue.said.empty()) {  // a job that Slurm has forgotten is an error to it
+  if (queue.good && !queue.said.empty()) {  // for a job that has ended long ago, squeue fails
     throw UsageError(
         "job {} of experiment '{}' is still queued or running: wait for it, or "
         "scancel {}",
@@ -99,7 +99,8 @@ std::string ArrayScript(const StoredExperiment& experiment, const std::vector<Ex
   for (const ExperimentRun& run : runs) names.push_back(run.name);
   const size_t at_once =
       terms.at_once ? std::min<size_t>(*terms.at_once, runs.size()) : runs.size();
-  // Before its time limit a task's shell, which has become shoal, gets SIGINT and stops in order.
+  // Before its time limit the task gets SIGINT. The shell has been replaced by shoal, which stops
+  // in order.
   return fmt::format(
       "#!/usr/bin/env bash\n"
       "# One run of the experiment a task; written by `shoal experiment run --slurm`.\n"

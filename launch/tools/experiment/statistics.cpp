@@ -89,7 +89,7 @@ Interval Wilson95(uint64_t successes, uint64_t trials) {
   const double centre = (rate + z2 / (2 * n)) / (1 + z2 / n);
   const double half =
       kNormal95 / (1 + z2 / n) * std::sqrt(rate * (1 - rate) / n + z2 / (4 * n * n));
-  // Both ends are exact where they are 0 and 1; rounding would leave 1e-17 beside them.
+  // If an end is 0 or 1, use the exact value: rounding would leave an error of 1e-17.
   return {successes == 0 ? 0 : std::max(0.0, centre - half),
           successes == trials ? 1 : std::min(1.0, centre + half)};
 }

@@ -58,7 +58,7 @@ SampleRatio RatioToFirst(const ordered_json& arms, size_t i) {
 
 std::string NameOf(const ordered_json& arm) { return arm.at("name").get<std::string>(); }
 
-// Behind target_success, where newer builds have it.
+// Adds the rule's name after target_success, where newer builds write it.
 void NameFormerRule(ordered_json* summary) {
   ordered_json named;
   for (const auto& [key, value] : summary->items()) {
@@ -73,7 +73,7 @@ void Recompute(ordered_json* summary) {
   ordered_json& arms = summary->at("arms");
   for (ordered_json& arm : arms) SetAggregates(RowFigures(arm), &arm);
   ordered_json ratios = ordered_json::array();
-  if (!summary->at("ratios").empty()) {  // none of a task without success
+  if (!summary->at("ratios").empty()) {  // a task without success has no ratios
     for (size_t i = 1; i < arms.size(); ++i) {
       ratios.push_back(
           RatioJson(NameOf(arms.at(i)) + "/" + NameOf(arms.at(0)), RatioToFirst(arms, i)));

@@ -59,7 +59,7 @@ std::vector<TargetReached> TargetsOf(const ArmOutcome& arm) {
   return targets;
 }
 
-// The words of docs/experiments.md: a run that is still going is "interrupted" there.
+// Uses the words of docs/experiments.md, in which an active run is "interrupted".
 const char* StatusWord(ExperimentRunStatus standing) {
   return ToString(standing == ExperimentRunStatus::kRunning ? ExperimentRunStatus::kInterrupted
                                                             : standing);
@@ -166,7 +166,7 @@ std::vector<JudgedWorld> JudgedWorlds(const StoredExperiment& experiment) {
     add(ArmConfig(experiment.base, arm, experiment.definition.name), arm.name);
   }
   for (const std::string& task : experiment.definition.transfer) {
-    // Same as `shoal eval --task`: without the run's model file.
+    // Like `shoal eval --task`, ignores the run's model file.
     Config config = experiment.base;
     config.task = task;
     config.model.clear();

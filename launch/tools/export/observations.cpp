@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr double kFarShare = 0.1, kFarFactor = 30;
 
-// Empty: none.
+// Returns the run that contains the checkpoint; empty if there is none.
 fs::path RunOf(const fs::path& checkpoint) {
   const fs::path checkpoints = fs::weakly_canonical(checkpoint).parent_path();
   for (const fs::path& folder :

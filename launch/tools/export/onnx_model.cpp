@@ -54,7 +54,7 @@ void Write(const std::string& name, const OnnxTensor& tensor, onnx::proto::Tenso
   out->set_raw_data(tensor.values.data(), tensor.values.size() * sizeof(float));
 }
 
-// Reads one file, whose name is in every error.
+// Reads one file. Every error names the file.
 class Reader {
  public:
   explicit Reader(std::string source) : source_(std::move(source)) {}

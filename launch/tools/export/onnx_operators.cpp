@@ -34,7 +34,7 @@ OnnxTensor MapValues(const OnnxTensor& x, const Function& function) {
   return y;
 }
 
-// Inputs are f32 here whatever the file says of them.
+// The evaluator stores all inputs as f32, whatever type the file declares.
 OnnxTensor Cast(const OnnxNode& node, OnnxArguments in) {
   Expect(Get<int64_t>(node, "to") == int64_t(OnnxPort::Type::kF32), node, "f32");
   return *in[0];
@@ -59,7 +59,7 @@ OnnxTensor Clip(const OnnxNode& node, OnnxArguments in) {
   return MapValues(*in[0], [&](float x) { return std::min(std::max(x, low), high); });
 }
 
-// The second one's shape is the end of the first one's: its numbers come round again.
+// The shape of the second input is the end of the first one's shape, so its numbers repeat.
 template <class Function>
 OnnxTensor Combine(const OnnxNode& node, OnnxArguments in, const Function& function) {
   Expect(in.size() == 2, node, "two inputs");
@@ -135,7 +135,7 @@ OnnxTensor Gemm(const OnnxNode& node, OnnxArguments in) {
   return y;
 }
 
-// The last two dimensions of each are matrices; one of both is a single one.
+// The last two dimensions of each input are matrices. One of the inputs is a single matrix.
 OnnxTensor MatMul(const OnnxNode& node, OnnxArguments in) {
   Expect(in.size() == 2, node, "two inputs");
   const OnnxTensor &a = *in[0], &b = *in[1];

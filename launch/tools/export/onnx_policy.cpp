@@ -21,9 +21,9 @@ using nn::Activation;
 using nn::LayerPlan;
 using nn::MapShape;
 
-constexpr float kNormEpsilon = 1e-5f;  // of layer_norm.h and batch_norm.h
+constexpr float kNormEpsilon = 1e-5f;  // as in layer_norm.h and batch_norm.h
 
-// nn::AveragePool along one side as a matrix (inputs, outputs): row-major shares.
+// nn::AveragePool along one side as a row-major matrix (inputs, outputs) of shares.
 std::vector<float> PoolShares(int inputs, int outputs) {
   std::vector<float> shares(size_t(inputs) * size_t(outputs), 0.f);
   for (int i = 0; i < outputs; ++i) {
@@ -59,14 +59,14 @@ std::vector<float> Coordinates(int64_t side) {
   return coordinates;
 }
 
-// A matrix of two columns, of which `values` are the second or the first and the other is 0.
+// A matrix of two columns. `values` are the second or the first column; the other is 0.
 std::vector<float> BesideZeros(const std::vector<float>& values, bool second) {
   std::vector<float> matrix(values.size() * 2, 0.f);
   for (size_t i = 0; i < values.size(); ++i) matrix[2 * i + size_t(second)] = values[i];
   return matrix;
 }
 
-// Appends nodes to a model. Values are known by their names; each function returns its output's.
+// Appends nodes to a model. Values have names; each function returns the name of its output.
 class GraphWriter {
  public:
   explicit GraphWriter(OnnxModel* model) : model_(*model) {}
@@ -101,7 +101,7 @@ class GraphWriter {
     return input;
   }
 
-  // Layers whose parameters are constants already. Returns the last one's output.
+  // Adds layers whose parameters are already constants. Returns the output of the last layer.
   std::string AddLayers(const nn::NetworkPlan& plan, const std::string& input) {
     std::vector<std::string> outputs;
     for (const LayerPlan& layer : plan.layers()) {
@@ -165,7 +165,8 @@ class GraphWriter {
     return Activate(layer.activation, value);
   }
 
-  // Windows of rows and columns are independent of each other: a product from either side.
+  // Windows of rows and columns are independent of each other, so pooling is a product from either
+  // side.
   std::string AddAveragePool(const LayerPlan& layer, const std::string& source) {
     const MapShape& from = layer.input;
     const MapShape& to = layer.output;
@@ -178,8 +179,8 @@ class GraphWriter {
     return Add("MatMul", {rows, Add("MatMul", {source, columns})});
   }
 
-  // nn::SpatialSoftmax by products from either side, which keep a map's planes apart: e = exp(s x -
-  // its plane's largest), then both means of coordinates at once, (N, C, 1, 2).
+  // nn::SpatialSoftmax by products from either side, which keep a map's planes apart. First e =
+  // exp(s x - largest value of the plane), then both means of coordinates at once, (N, C, 1, 2).
   std::string AddSpatialSoftmax(const LayerPlan& layer, const std::string& source) {
     const int64_t height = layer.input.height, width = layer.input.width;
     const auto constant = [&](const char* part, const Shape& shape, std::vector<float> values) {
@@ -237,7 +238,7 @@ void AddPorts(const ObservationSpec& spec, OnnxModel* model) {
   model->output = {.name = kActionOutput, .shape = {spec.action_size}};
 }
 
-// Adds the parameters of encoder and actor. The outputs of a Gaussian are means and deviations: the
+// Adds the parameters of encoder and actor. The outputs of a Gaussian are means and deviations; the
 // rows of the deviations are left out.
 void AddParameters(const std::vector<nn::ParameterSpec>& specs, const nn::ActorPlan& actor,
                    nn::ParameterSet* set, OnnxModel* model) {
@@ -252,7 +253,7 @@ void AddParameters(const std::vector<nn::ParameterSpec>& specs, const nn::ActorP
   }
 }
 
-// The policy's vector from its blocks; empty without.
+// Builds the policy's vector from its blocks; empty if the policy has no blocks.
 std::string AddVector(const std::optional<nn::VectorScale>& scale, const OnnxModel& model,
                       GraphWriter* graph) {
   std::vector<std::string> blocks;

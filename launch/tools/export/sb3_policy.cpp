@@ -25,8 +25,8 @@ using nn::ActorOutput;
 // Stable-Baselines3's names for the parameters of a policy with this output.
 struct Sb3Names {
   std::vector<std::string> extractors;
-  std::string mlp;           // before a hidden layer's number
-  std::string output_layer;  // of the action; empty: the MLP's next number
+  std::string mlp;           // name before a hidden layer's number
+  std::string output_layer;  // name of the action's layer; empty: the MLP's next number
 };
 
 const Sb3Names& NamesOf(ActorOutput output) {
@@ -46,7 +46,7 @@ const Sb3Names& NamesOf(ActorOutput output) {
   return unsquashed;
 }
 
-// The class whose policy it is.
+// Stable-Baselines3's class of the algorithm.
 std::string_view ModelClassOf(const std::string& algorithm) {
   std::vector<std::string_view> known;
   for (const learner::Algorithm& candidate : learner::Algorithms()) {
@@ -73,12 +73,13 @@ void RefuseWithoutCounterpart(const policy::PolicyDescription& policy, const nn:
   }
 }
 
-// Copies parameters to their names there.
+// Copies parameters under Stable-Baselines3's names.
 class Renamer {
  public:
   Renamer(nn::ParameterSet* set, nn::TensorMap* result) : set_(*set), result_(*result) {}
 
-  // A layer's weight and bias; of their rows the half that begins at `first_row`, if that is given.
+  // Copies a layer's weight and bias, or `rows` of their rows from `first_row` on, if `rows` is
+  // given.
   void Layer(const std::string& ours, const std::string& theirs, int first_row = 0, int rows = 0) {
     for (const char* part : {".weight", ".bias"}) {
       Tensor(ours + part, theirs + part, first_row, rows);
@@ -119,7 +120,7 @@ std::string ModelOf(const policy::PolicyDescription& policy, const nn::ActorPlan
 void AddExtractors(const nn::NetworkPlan& encoder, const nn::ActorPlan& actor,
                    const Sb3Names& names, Renamer* renamer) {
   for (const std::string& extractor : names.extractors) {
-    for (size_t i = 1; i < encoder.layers().size(); ++i) {  // behind the pixels
+    for (size_t i = 1; i < encoder.layers().size(); ++i) {  // after the pixels
       renamer->Layer(encoder.layers()[i].name, fmt::format("{}.cnn.{}", extractor, 2 * (i - 1)));
     }
     renamer->Layer(actor.trunk.layers()[0].name, extractor + ".linear.0");
@@ -135,7 +136,7 @@ void AddMlp(const nn::ActorPlan& actor, const Sb3Names& names, Renamer* renamer)
   renamer->Layer(layers.back().name, output, 0, actor.action_size);
 }
 
-// The second half of a Gaussian's outputs.
+// Adds the deviations, the second half of a Gaussian's outputs.
 void AddDeviation(const nn::ActorPlan& actor, Renamer* renamer, Sb3File* file) {
   if (actor.log_std == nn::LogStd::kClamped) {
     renamer->Layer(actor.mlps[0].layers().back().name, "actor.log_std", actor.action_size,

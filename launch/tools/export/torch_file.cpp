@@ -38,10 +38,10 @@ class Pickler {
   }
   void False() { text_ += '\x89'; }
   void Mark() { text_ += '('; }
-  void Tuple() { text_ += 't'; }  // of what is there since the mark
-  void Call() { text_ += 'R'; }   // the function below the tuple on top
+  void Tuple() { text_ += 't'; }  // of the values since the mark
+  void Call() { text_ += 'R'; }   // calls the function below the tuple on top
   void CallWithout() { text_ += ")R"; }
-  void Persistent() { text_ += 'Q'; }  // what the tuple on top stands for
+  void Persistent() { text_ += 'Q'; }  // the object that the tuple on top names
   void SetItems() { text_ += 'u'; }
   std::string Finish() { return std::move(text_) + '.'; }
 

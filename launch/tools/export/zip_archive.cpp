@@ -61,7 +61,7 @@ std::string WriteZip(const std::vector<std::pair<std::string, std::string>>& fil
   archive += directory;
   Put(kEnd, 4, &archive);
   Put(0, 2, &archive);  // this disk
-  Put(0, 2, &archive);  // the directory's
+  Put(0, 2, &archive);  // disk of the directory
   Put(files.size(), 2, &archive);
   Put(files.size(), 2, &archive);
   Put(directory.size(), 4, &archive);

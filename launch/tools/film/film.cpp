@@ -24,13 +24,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Reads a stream that is too large to be kept, from a pipe with a name, on a thread of its own.
+// Reads a stream from a named pipe on a separate thread, because the stream is too large to store.
 class PipeReading {
  public:
   PipeReading(const fs::path& path, const std::function<void(const fs::path&)>& read)
       : path_(path) {
     if (mkfifo(path.c_str(), 0600) != 0) Fail();
-    // Held open for writing, so that the reader sees no end before EndStream says so.
+    // The descriptor stays open for writing, so the reader sees no end before EndStream closes it.
     held_ = Descriptor(open(path.c_str(), O_RDWR | O_CLOEXEC));
     if (held_.get() < 0) Fail();
     done_ = std::async(std::launch::async, [path, read] { read(path); });
@@ -39,11 +39,12 @@ class PipeReading {
   PipeReading(const PipeReading&) = delete;
   PipeReading& operator=(const PipeReading&) = delete;
 
-  // It has ended before its stream: by an error, which Finish throws.
+  // True if the reader has ended before its stream, with an error that Finish throws.
   bool broken() const {
     return done_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
   }
-  // Waits until the whole stream has been read, once all others that write it are gone. Once.
+  // Waits until the whole stream has been read. Call it once, after all other writers have closed
+  // the pipe.
   void Finish() {
     EndStream();
     done_.get();
@@ -55,7 +56,7 @@ class PipeReading {
   }
   void EndStream() {
     held_.Close();
-    // A reader that opens the pipe only now would wait for a writer.
+    // Otherwise a reader that opens the pipe only now would wait for a writer.
     while (done_.valid() &&
            done_.wait_for(std::chrono::milliseconds(10)) != std::future_status::ready) {
       const Descriptor writer(open(path_.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC));
@@ -73,7 +74,7 @@ std::string LabelOf(const fs::path& checkpoint, const CheckpointState& state) {
                      state.env_steps);
 }
 
-// One checkpoint's episodes. False when `stop` ended it.
+// Films the episodes of one checkpoint. Returns false if `stop` ended it.
 bool FilmCheckpoint(const FilmOrder& order, const fs::path& checkpoint, const std::string& label,
                     FilmReel* reel, FilmStrip* strip, const std::function<bool()>& stop) {
   const ScratchFolder scratch;
@@ -91,8 +92,8 @@ bool FilmCheckpoint(const FilmOrder& order, const fs::path& checkpoint, const st
                         [&] { return reading.broken() || stop(); });
     if (!played && stop()) return false;
   } catch (const Error&) {
-    // The side that ended first has the reason: without a reader the actor cannot go on, and
-    // without an actor there is nothing to read.
+    // The side that failed first has the reason: without a reader the actor fails too, and without
+    // an actor there is nothing to read.
     if (reading.broken()) reading.Finish();
     throw;
   }
@@ -110,7 +111,7 @@ void CheckFilmOutput(const fs::path& run, const fs::path& output) {
   if (output.extension() != ".mp4") {
     throw UsageError("--output {}: a film is an .mp4 file", output.string());
   }
-  // The run's own folder of films is made when it is needed.
+  // The run's own film folder is made later. If it does not exist yet, check that it can be made.
   const fs::path films = FilmPath(run, "").parent_path();
   CheckWritable(output.parent_path() == films && !fs::exists(films) ? films : output);
 }

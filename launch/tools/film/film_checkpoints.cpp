@@ -36,7 +36,7 @@ std::vector<fs::path> CheckpointsAcross(const fs::path& run) {
   for (const auto& [at, path] : CheckpointsByUpdates(run)) {
     if (at < updates) earlier.push_back(path);
   }
-  // Evenly spread from the first on; the last of the film is not among them.
+  // Earlier checkpoints, evenly spread from the first on; the last checkpoint follows them.
   std::vector<fs::path> shown;
   const size_t count = std::min(kEarlier, earlier.size());
   for (size_t i = 0; i < count; ++i) shown.push_back(earlier[i * earlier.size() / count]);

@@ -37,7 +37,7 @@ void FilmStrip::Add(const PictureView& picture) {
   if (seen_++ % stride_ != 0) return;
   kept_.push_back(newest_);
   if (kept_.size() < 2 * kPictures) return;
-  // Twice as far apart from now on, so that memory does not grow with the episode.
+  // Keep every second picture from now on, so that memory does not grow with the episode.
   for (size_t i = 0; 2 * i < kept_.size(); ++i) kept_[i].swap(kept_[2 * i]);
   kept_.resize((kept_.size() + 1) / 2);
   stride_ *= 2;

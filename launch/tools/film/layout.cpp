@@ -12,10 +12,10 @@ constexpr int kMostCameraWidth = kFilmView;  // of all columns together
 // The cameras in rows and columns; sizes in pixels.
 struct Grid {
   int columns = 1, rows = 1;
-  int height = 0, width = 0;  // of one picture as it is shown
+  int height = 0, width = 0;  // of one picture as shown
 };
 
-// Enlarged by a whole number, or made smaller by one; at least one pixel.
+// `size` enlarged or reduced by a whole number; at least one pixel.
 int Resized(int size, int factor, int divisor) { return std::max(1, size * factor / divisor); }
 
 Grid GridOf(int cameras, int columns, int height, int width) {
@@ -25,7 +25,7 @@ Grid GridOf(int cameras, int columns, int height, int width) {
   const int factor = std::max(1, std::min(free_height / height, free_width / width));
   const int divisor = std::max(
       {1, (height + free_height - 1) / free_height, (width + free_width - 1) / free_width});
-  // One of the two is 1.
+  // Either the factor or the divisor is 1.
   return {columns, rows, Resized(height, factor, divisor), Resized(width, factor, divisor)};
 }
 
@@ -48,7 +48,7 @@ FilmLayout MakeFilmLayout(int cameras, int height, int width) {
   int view_x = kMargin;
   if (cameras > 0) {
     const Grid grid = BestGrid(cameras, height, width);
-    // The last row ends with the view.
+    // The bottom of the last row is the bottom of the view.
     const int pitch = grid.rows == 1 ? 0 : (kFilmView - grid.height) / (grid.rows - 1);
     for (int i = 0; i < cameras; ++i) {
       const int column = i % grid.columns, row = i / grid.columns;

@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kEncoder[] = "libx264";
-// Constant quality of x264, 0 (lossless) to 51: with it text of 14 pixels has clean edges.
+// Constant quality of x264, 0 (lossless) to 51. At this value text of 14 pixels has clean edges.
 constexpr char kQuality[] = "23";
 
 struct Free {
@@ -45,8 +45,8 @@ std::string Reason(int error) {
   return av_make_error_string(text, sizeof text, error);
 }
 
-// A file under a temporary name, and the folder where it was made for it: both go away with this
-// unless they are kept.
+// A file under a temporary name, and its folder if that had to be made. The destructor removes both
+// unless Keep was called.
 class UnfinishedFile {
  public:
   explicit UnfinishedFile(const fs::path& path)
@@ -60,7 +60,7 @@ class UnfinishedFile {
     std::error_code error;
     if (kept_) return;
     fs::remove(temporary_, error);
-    if (made_folder_) fs::remove(folder_, error);  // not with something in it
+    if (made_folder_) fs::remove(folder_, error);  // fails if it is not empty
   }
   UnfinishedFile(const UnfinishedFile&) = delete;
   UnfinishedFile& operator=(const UnfinishedFile&) = delete;
@@ -69,7 +69,7 @@ class UnfinishedFile {
   // The file's name for libav, with a protocol: without one, libav would look for one in the name.
   std::string Url() const { return "file:" + temporary_.string(); }
   void Keep() {
-    OpenToOthers(temporary_);  // a film is made to be passed on
+    OpenToOthers(temporary_);  // films are shared with other users
     if (rename(temporary_.c_str(), path_.c_str()) != 0) {
       throw RuntimeError("cannot write '{}': {}", path_.string(), std::strerror(errno));
     }
@@ -117,14 +117,14 @@ struct Mp4Writer::Encoder {
     CHECK(codec != nullptr);
     codec->width = width;
     codec->height = height;
-    codec->pix_fmt = AV_PIX_FMT_YUV420P;  // the one that every browser decodes
+    codec->pix_fmt = AV_PIX_FMT_YUV420P;  // every browser decodes this format
     av_reduce(&codec->time_base.num, &codec->time_base.den, microseconds, 1'000'000, 1'000'000);
     codec->framerate = av_inv_q(codec->time_base);
     // The range that swscale produces from RGB.
     codec->color_range = AVCOL_RANGE_MPEG;
     codec->colorspace = AVCOL_SPC_SMPTE170M;
     codec->thread_count = 1;  // a film is small, and others may be training on these cores
-    codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;  // as MP4 wants it
+    codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;  // required by MP4
     Must(av_opt_set(codec->priv_data, "crf", kQuality, 0));
     Must(av_opt_set(codec->priv_data, "preset", "medium", 0));
     Must(avcodec_open2(codec.get(), encoder, nullptr));
@@ -141,12 +141,12 @@ struct Mp4Writer::Encoder {
     stream->time_base = codec->time_base;
     stream->avg_frame_rate = codec->framerate;
     Must(avio_open(&format->pb, url.c_str(), AVIO_FLAG_WRITE));
-    // Browsers start to play before they have the whole file.
+    // Lets browsers start to play before they have the whole file.
     Must(av_opt_set(format->priv_data, "movflags", "+faststart", 0));
     Must(avformat_write_header(format.get(), nullptr));
   }
 
-  // Null: no further frames come.
+  // Null ends the stream.
   void Send(const AVFrame* next) {
     Must(avcodec_send_frame(codec.get(), next));
     while (true) {
@@ -160,10 +160,10 @@ struct Mp4Writer::Encoder {
     }
   }
 
-  UnfinishedFile file;  // first: removed once libav has let go of it
+  UnfinishedFile file;  // first, so it is removed after libav has closed it
   Owned<AVCodecContext> codec;
   Owned<AVFormatContext> format;
-  AVStream* stream = nullptr;  // format's
+  AVStream* stream = nullptr;  // owned by format
   Owned<AVFrame> frame;
   Owned<AVPacket> packet;
   Owned<SwsContext> scaler;
@@ -179,7 +179,7 @@ void Mp4Writer::Add(std::span<const uint8_t> pixels, int stride) {
   Encoder& encoder = *encoder_;
   AVFrame* const frame = encoder.frame.get();
   CHECK(pixels.size() == size_t(stride) * size_t(frame->height)) << pixels.size();
-  encoder.Must(av_frame_make_writable(frame));  // the encoder may still look at the one before
+  encoder.Must(av_frame_make_writable(frame));  // the encoder may still read the frame before
   const uint8_t* const planes[] = {pixels.data()};
   const int strides[] = {stride};
   sws_scale(encoder.scaler.get(), planes, strides, 0, frame->height, frame->data, frame->linesize);

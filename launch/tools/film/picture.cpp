@@ -62,7 +62,7 @@ struct FilmPicture::Canvas {
     }
     return text.empty() ? "" : text + "…";
   }
-  // Returns where the text ends.
+  // Returns the x position of the text's end.
   double Write(double x, double baseline, const std::string& text, double width) {
     const std::string fitted = Fitted(text, width);
     cairo_move_to(context, x, baseline);
@@ -117,7 +117,7 @@ void FilmPicture::DrawCamera(const Box& box, size_t camera, std::span<const uint
   const std::span<const uint8_t> picture =
       frame.subspan(camera * channels * plane, channels * plane);
   Fill(box, [&](int row, int column) -> RedGreenBlue {
-    // The nearest neighbour: what the policy gets is shown pixel by pixel.
+    // Nearest neighbour, so that each pixel of the policy's input stays visible.
     const size_t at = size_t(row * spec_.height / box.height) * size_t(spec_.width) +
                       size_t(column * spec_.width / box.width);
     if (channels == 1) return {picture[at], picture[at], picture[at]};
@@ -191,7 +191,7 @@ void FilmPicture::Draw(const FilmText& text, std::span<const uint8_t> input,
   canvas_->Use(kPaper);
   cairo_paint(canvas_->context);
   DrawWords(text);
-  cairo_surface_flush(canvas_->surface);  // before others touch its memory
+  cairo_surface_flush(canvas_->surface);  // required before its memory is read directly
   const auto newest = size_t(spec_.stack) - 1;
   for (size_t i = 0; i < layout_.cameras.size(); ++i) {
     const size_t camera = i % spec_.cameras.size(), behind = i / spec_.cameras.size();

@@ -12,9 +12,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr uint32_t kUnknownStep = 40'000;      // microseconds, where a stream does not say
+constexpr uint32_t kUnknownStep = 40'000;      // microseconds, if a stream has no duration
 constexpr uint32_t kShortestPicture = 20'000;  // 50 a second: screens show no more
-constexpr uint32_t kLongestStep = 10'000'000;  // of a task that anybody would look at
+constexpr uint32_t kLongestStep = 10'000'000;  // longest plausible step of a task
 constexpr uint32_t kLastPicture = 500'000;
 
 // Checks the header of a stream from another process.
@@ -40,7 +40,7 @@ void CheckHeader(const image::FrameStreamHeader& header, const ObservationSpec& 
   }
 }
 
-// Follows the records of a stream: each episode from its reset on, step by step, to its end.
+// Checks the order of a stream's records: each episode from its reset to its end, step by step.
 class EpisodeOrder {
  public:
   EpisodeOrder(const fs::path& stream, uint32_t episodes) : stream_(stream), episodes_(episodes) {}
@@ -67,7 +67,7 @@ class EpisodeOrder {
  private:
   const fs::path stream_;
   const uint32_t episodes_;
-  uint32_t episode_ = 0, step_ = 0;  // that come next
+  uint32_t episode_ = 0, step_ = 0;  // expected next
 };
 
 }  // namespace

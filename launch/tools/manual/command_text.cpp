@@ -29,7 +29,7 @@ std::vector<Word> Named(const std::vector<std::string>& names) {
   return words;
 }
 
-// Keys as they begin: "learner.batch=".
+// Keys in the form "learner.batch=".
 std::vector<Word> Assignments() {
   std::vector<Word> words;
   for (const KeyDescription& key : DescribeEachKey()) {
@@ -38,7 +38,8 @@ std::vector<Word> Assignments() {
   return words;
 }
 
-// "fast | reference" at the start of a meaning, or "TEXT:{train,eval}" of a type.
+// Reads choices from "fast | reference" at the start of a meaning, or from the type
+// "TEXT:{train,eval}".
 std::vector<Word> Choices(const std::string& type, const std::string& meaning) {
   std::smatch match;
   if (std::regex_search(type, match, std::regex("\\{([^}]*)\\}"))) return Split(match[1], ",");
@@ -48,7 +49,7 @@ std::vector<Word> Choices(const std::string& type, const std::string& meaning) {
   return {};
 }
 
-// The values that are known of what an option or argument of this name takes.
+// The known values of an option or argument with this name.
 std::vector<Word> KnownValues(const std::string& name, const std::string& type,
                               const std::string& meaning) {
   if (name == "--preset") return Named(ListPresets());
@@ -58,7 +59,7 @@ std::vector<Word> KnownValues(const std::string& name, const std::string& type,
   return Choices(type, meaning);
 }
 
-// An option that may also stand without its name is described as each of both.
+// Call it twice for an option that may also be positional: once for each form.
 OptionText DescribeOption(const CLI::Option& option, bool positional) {
   const CLI::Formatter formatter;
   OptionText text;
@@ -89,7 +90,7 @@ CommandText DescribeCommand(const CLI::App& app, const std::string& name) {
   const std::string label = "Usage: ";
   if (text.usage.starts_with(label)) text.usage.erase(0, label.size());
   text.usage.erase(text.usage.find_last_not_of('\n') + 1);
-  // Options without a group are hidden from --help: other programs use them.
+  // Options without a group are for other programs and hidden from --help.
   for (const CLI::Option* option :
        app.get_options([](const CLI::Option* one) { return !one->get_group().empty(); })) {
     if (option->get_positional()) text.options.push_back(DescribeOption(*option, true));

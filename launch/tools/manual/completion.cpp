@@ -52,7 +52,7 @@ std::vector<Row> AllRows(const std::vector<CommandText>& programs) {
   return rows;
 }
 
-// Between single quotes, in which nothing but them (and in fish the backslash) means anything.
+// Quotes with single quotes, in which only the single quote (and in fish the backslash) is special.
 std::string Quoted(Shell shell, std::string_view text) {
   std::string out = "'";
   for (char c : text) {
@@ -67,7 +67,7 @@ std::string Quoted(Shell shell, std::string_view text) {
   return out + "'";
 }
 
-// Up to its first full stop: a list of words has one line each.
+// The first sentence only, because a list of words has one line for each word.
 std::string FirstSentence(const std::string& meaning) {
   return meaning.substr(0, meaning.find(". "));
 }
@@ -83,7 +83,7 @@ std::string PrintWords(Shell shell, const std::vector<Word>& words) {
   return text;
 }
 
-// The words of place $1; fails where there is no such place.
+// Prints the words of place $1; fails if there is no such place.
 std::string Table(Shell shell, const std::vector<Row>& rows) {
   const bool fish = shell == Shell::kFish;
   std::string text =
@@ -98,7 +98,7 @@ std::string Table(Shell shell, const std::vector<Row>& rows) {
   return text;
 }
 
-// The names of commands below a program, as alternatives of a case.
+// The names of a program's sub-commands, as alternatives of a `case`.
 std::string Levels(Shell shell, const std::vector<CommandText>& programs) {
   std::vector<std::string> levels;
   for (const CommandText& program : programs) {

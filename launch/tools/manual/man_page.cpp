@@ -12,18 +12,18 @@
 namespace shoal::launch {
 namespace {
 
-// Text as it is to be read: no character of it means anything to the formatter.
+// Escapes text, so that no character is special to the formatter.
 std::string Roff(std::string_view text) {
   std::string out;
   for (char c : text) {
-    // At the start of a line these would begin a request.
+    // At the start of a line these characters would begin a request.
     if ((c == '.' || c == '\'') && (out.empty() || out.back() == '\n')) out += "\\&";
     switch (c) {
       case '\\':
         out += "\\e";
         break;
       case '-':
-        out += "\\-";  // a hyphen is another character, which a search does not find
+        out += "\\-";  // a minus: a search for "-" does not find a hyphen
         break;
       case '^':
         out += "\\(ha";
@@ -47,18 +47,18 @@ std::string Roff(std::string_view text) {
 std::string Title(const std::string& name, int section) {
   std::string upper = name;
   std::ranges::transform(upper, upper.begin(), [](unsigned char c) { return std::toupper(c); });
-  // Left-adjusted and without hyphenation: names of options and presets stay whole.
+  // Left-adjusted and without hyphenation, so that names of options and presets stay whole.
   return fmt::format(".TH {} {} \"\" \"Shoal {}\" \"Shoal\"\n.nh\n.ad l\n", Roff(upper), section,
                      Roff(BuildVersion()));
 }
 
-// A meaning as the NAME section has it: what it does, in lower case, without a full stop.
+// A meaning for the NAME section: in lower case, without a full stop.
 std::string Brief(std::string meaning) {
   if (meaning.starts_with("Shoal ")) meaning.erase(0, 6);
   const size_t end = meaning.find(". ");
   if (end != std::string::npos) meaning.resize(end);
   if (meaning.ends_with('.')) meaning.pop_back();
-  // Only an ordinary word loses its capital letter.
+  // An acronym keeps its capital letters.
   if (meaning.size() > 1 && std::islower(static_cast<unsigned char>(meaning[1]))) {
     meaning[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(meaning[0])));
   }

@@ -21,7 +21,7 @@ namespace {
 
 using nn::Module;
 
-// A readout needs the trunk of a head: that of an actor, whose actions are not used.
+// A readout needs the trunk of a head. It uses the trunk of an actor, whose actions are ignored.
 class Network {
  public:
   Network(const Config& config, const ObservationSpec& spec, int labels, nn::Precision precision)
@@ -37,7 +37,7 @@ class Network {
     Refresh();
   }
 
-  // (B, labels).
+  // Returns (B, labels).
   std::span<const float> Forward(std::span<const uint8_t> frames, nn::Statistics statistics) {
     encoder_.Forward(nn::HostArray(frames), statistics);
     head_.Forward({});
@@ -78,7 +78,7 @@ Standard StandardOf(const LabelledFrames& frames, size_t count) {
     const double off = frames.values[i] - standard.mean[i % labels];
     standard.deviation[i % labels] += off * off / double(count);
   }
-  // A label that stays as it is would be divided by 0.
+  // A constant label would be divided by 0.
   for (double& deviation : standard.deviation) deviation = std::max(std::sqrt(deviation), 1e-6);
   return standard;
 }
@@ -137,7 +137,7 @@ RegressionErrors RegressOnFrames(const Config& config, const LabelledFrames& fra
                           .of_mean = std::vector<double>(labels),
                           .trained = int(trained),
                           .held_out = int(held_out)};
-  // The last batch is filled up with frames that are not counted.
+  // Frames that fill up the last batch are not counted.
   std::vector<uint8_t> batch_frames(batch * size_t(frames.spec.FrameBytes()));
   for (size_t first = trained; first < frames.size(); first += batch) {
     const size_t count = std::min(batch, frames.size() - first);

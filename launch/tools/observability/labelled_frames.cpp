@@ -10,7 +10,7 @@
 namespace shoal::launch {
 namespace {
 
-// A new episode draws object and goal anew, which random play hardly moves.
+// Random play hardly moves object and goal, so short episodes, which draw both again, vary them.
 constexpr int kStepsPerEpisode = 9;
 
 std::vector<float> LabelsOf(const PrivilegedBlocks& blocks, const ObservationSpec& spec,

@@ -40,7 +40,8 @@ Config ConfigOf(const ObservabilityRequest& request, const std::vector<std::stri
   config.observation.width = request.width;
   config.observation.height = request.height;
   config.observation.quality = request.quality;
-  // Goals are relabelled only if the policy's observation has them: then the marker is hidden.
+  // Relabelled goals must be part of the policy's observation, and then the goal's marker is
+  // hidden.
   if (request.goal_hidden) config.observation.goal_mode = "desired";
   if (request.goal_hidden) config.replay.hindsight = "future";
   config.sac.aux = request.labels;
@@ -48,7 +49,7 @@ Config ConfigOf(const ObservabilityRequest& request, const std::vector<std::stri
   return config;
 }
 
-// The numbers of each label together.
+// Combines the errors of each label's numbers.
 std::vector<double> ByLabel(const std::vector<double>& of_numbers, const PrivilegedBlocks& blocks) {
   std::vector<double> by_label;
   size_t at = 0;

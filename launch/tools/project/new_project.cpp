@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The folder of an installation, or of the build.
+// The template's folder, in an installation or in the build folder.
 fs::path Template() {
   std::string looked;
   for (const fs::path& folder : SharedDataFolders("template")) {
@@ -24,7 +24,7 @@ fs::path Template() {
   throw RuntimeError("found no template of a project; looked in {}", looked);
 }
 
-// Folders and plain files; what is a link in a build's shared data becomes a file.
+// Copies folders and plain files. A link in the build's shared data becomes a file.
 void CopyTree(const fs::path& from, const fs::path& to) {
   MakeFolders(to);
   OpenToOthers(to);
@@ -38,7 +38,7 @@ void CopyTree(const fs::path& from, const fs::path& to) {
   }
 }
 
-// PREFIX of PREFIX/share/shoal/template: an installation's, or the build folder.
+// PREFIX of PREFIX/share/shoal/template: that of an installation, or the build folder.
 fs::path Prefix() {
   return fs::weakly_canonical(Template()).parent_path().parent_path().parent_path();
 }

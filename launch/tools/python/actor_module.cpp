@@ -1,9 +1,8 @@
-// SPDX-License-Identifier: Apache-2.0
-// shoal_rl._actor: the actor program, with environments of Python (shoal_rl/actor.py). It links
-// neither MuJoCo nor OSMesa.
+// SPDX-License-Identifier: Apache-2.0 shoal_rl._actor: the actor program with Python environments
+// (shoal_rl/actor.py). The module links neither MuJoCo nor OSMesa.
 //
-// Threads: the program runs without Python's lock, which each call of an environment takes, so that
-// threads of the user's code run meanwhile.
+// Threads: the program releases Python's lock (GIL), so that threads of the user's code can run.
+// Each call of an environment takes the lock.
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 

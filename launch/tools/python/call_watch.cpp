@@ -25,7 +25,7 @@ CallWatch::CallWatch(std::string environment, std::chrono::duration<double> limi
     : environment_(std::move(environment)), limit_(limit), caller_(pthread_self()) {
   sigset_t all, before;
   sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, &before);  // signals are the caller's
+  pthread_sigmask(SIG_SETMASK, &all, &before);  // the new thread must not handle signals
   thread_ = std::thread([this] { Watch(); });
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
@@ -43,7 +43,8 @@ void CallWatch::Begin(const char* name) {
 void CallWatch::End() { began_ns_.store(0, std::memory_order_release); }
 
 void CallWatch::Watch() {
-  // A process that was stopped meanwhile (Ctrl-Z) was not waiting: each look counts as little.
+  // If the process was stopped (Ctrl-Z), it did not wait, so each look counts at most `most`
+  // seconds.
   constexpr std::chrono::duration<double> most = 4 * kLook;
   std::chrono::duration<double> waited{};
   int64_t call = 0;
@@ -67,7 +68,7 @@ void CallWatch::EndProcess(const char* name) {
       "shoal-actor: error: environment {}: {} did not return within env.step_timeout = {} s; its "
       "Python stack is in this log\n",
       environment_, name, limit_.count());
-  // Not by stdio, whose locks the stuck call may hold.
+  // stdio is not used, because the stuck call may hold its locks.
   if (write(STDERR_FILENO, line.data(), line.size()) < 0) _exit(2);
   _exit(1);
 }

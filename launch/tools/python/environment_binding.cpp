@@ -32,8 +32,8 @@ namespace {
 
 constexpr char kSource[] = "shoal_rl.make";
 
-// Tasks of `library`, NAME.so, as built for this module: NAME_python.so beside it
-// (common/cmake/task_library.cmake).
+// Loads the tasks of `library`, NAME.so, from NAME_python.so in the same folder, which was built
+// for this module (common/cmake/task_library.cmake).
 void LoadPythonTasks(const std::string& library) {
   if (library.empty()) return;
   std::filesystem::path built = library;
@@ -41,8 +41,8 @@ void LoadPythonTasks(const std::string& library) {
   worlds::LoadTasks(built.string());
 }
 
-// `keys`: a configuration's, as JSON. Cameras that are not named are the task's first; without
-// pixels everything else is observed, unless the keys say what.
+// `keys`: keys of a configuration, as JSON. Defaults: the first cameras of the task; without
+// pixels, all blocks are observed.
 Config ReadKeys(const std::string& task_name, const std::string& keys) {
   Config config;
   ObservationConfig& observation = config.observation;
@@ -63,7 +63,7 @@ Config ReadKeys(const std::string& task_name, const std::string& keys) {
   return config;
 }
 
-// An environment with the frames of its stack. One episode at a time.
+// An environment with its frame stack. One episode at a time.
 class PlayedEnvironment {
  public:
   PlayedEnvironment(const std::string& task, const std::string& keys)
@@ -72,7 +72,7 @@ class PlayedEnvironment {
   const ObservationSpec& spec() const { return environment_->spec(); }
   bool has_success() const { return tasks::FindTask(spec().task).has_success(); }
 
-  // Starts episode `episode` of those that a seed names. Returns observation and distance.
+  // Starts episode `episode` of the sequence of `seed`. Returns observation and distance.
   py::tuple Reset(uint64_t seed, uint64_t episode) {
     running_ = false;
     const float distance = environment_->Reset(
@@ -87,8 +87,9 @@ class PlayedEnvironment {
     return py::make_tuple(Observation(), distance);
   }
 
-  // Returns observation, reward, terminated, truncated, success, distance and, where the step was
-  // faulty, why: the episode is truncated at the observation before, which is returned again.
+  // Returns observation, reward, terminated, truncated, success, distance and, if the step was
+  // faulty, the reason. A faulty step truncates the episode at the previous observation, which is
+  // returned again.
   py::tuple Step(const py::object& action) {
     if (!running_) throw UsageError("step: no episode is running; reset() starts one");
     const auto numbers =
@@ -97,11 +98,11 @@ class PlayedEnvironment {
       throw UsageError("step: expected an action of {} numbers", spec().action_size);
     }
     for (py::ssize_t i = 0; i < numbers.size(); ++i) {
-      // The episode goes on: nothing has been done. Written so that NaN is refused.
+      // No step has been made, so the episode continues. The comparison also refuses NaN.
       if (std::fabs(numbers.at(i)) <= 1) continue;
       throw UsageError("step: number {} of the action is {}, expected -1 to 1", i, numbers.at(i));
     }
-    running_ = false;  // unless the step comes to its end
+    running_ = false;  // stays false if the step throws
     StepResult result;
     try {
       result = environment_->Step({numbers.data(), size_t(numbers.size())}, {frame_, vector_});
@@ -112,7 +113,7 @@ class PlayedEnvironment {
     running_ = !result.terminated && !result.truncated;
     if (!frame_.empty()) {
       const auto frame = std::ptrdiff_t(frame_.size());
-      const auto end = stack_.begin() + frame * spec().stack;  // a goal picture stays
+      const auto end = stack_.begin() + frame * spec().stack;  // a goal picture stays last
       std::rotate(stack_.begin(), stack_.begin() + frame, end);
       std::ranges::copy(frame_, end - frame);
     }
@@ -133,7 +134,7 @@ class PlayedEnvironment {
         stack_(size_t(spec().InputBytes())),
         vector_(size_t(spec().RecordedVectorSize())) {}
 
-  // The observation of a policy: the stack and the observed blocks, each an array of its own.
+  // The observation of a policy: the stack and the observed blocks, each in a separate array.
   py::dict Observation() const {
     py::dict observation;
     if (spec().HasPixels()) {
@@ -144,7 +145,8 @@ class PlayedEnvironment {
     }
     for (const BlockSpec& block : spec().blocks) {
       if (!block.observed) continue;
-      // Not by length and pointer: pybind11 before 2.12 then misreads the item's size of NumPy 2.
+      // Copy the numbers: made from length and pointer, pybind11 before 2.12 misreads NumPy 2's
+      // item size.
       py::array_t<float> numbers(std::vector<py::ssize_t>{block.size});
       std::copy_n(vector_.begin() + spec().Recorded(block.name)->first, block.size,
                   numbers.mutable_data());

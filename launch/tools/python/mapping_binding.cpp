@@ -55,7 +55,7 @@ class Mapping {
 
   const std::string& environment() const { return description_.id; }
 
-  // `arrays`: name -> array. `first`: of an episode.
+  // `arrays`: name -> array. `first`: the first observation of an episode.
   py::dict Observe(const py::dict& arrays, bool first) {
     const std::vector<py::array> held = Take(arrays);
     std::vector<const void*> places;
@@ -91,7 +91,7 @@ class Mapping {
     return std::ranges::count(spec_.cameras, name) > 0 || spec_.Observed(name).has_value();
   }
 
-  // In the description's order; none where the policy does not see the array.
+  // Returns arrays in the description's order, without arrays that the policy does not see.
   std::vector<py::array> Take(const py::dict& arrays) const {
     std::vector<py::array> held;
     for (const SpaceArray& space : spaces_) {
@@ -108,7 +108,7 @@ class Mapping {
     return held;
   }
 
-  // A copy for the caller, as Policy.act takes it.
+  // Returns a copy of the inputs in the form that Policy.act takes.
   py::dict Inputs() {
     py::dict inputs;
     if (spec_.HasPixels()) {
@@ -130,7 +130,7 @@ class Mapping {
   hosted::ObservationMapping mapping_;
   const BlockPicker observed_;
   std::vector<SpaceArray> spaces_;
-  std::vector<std::vector<uint8_t>> unseen_;  // stand for arrays that the policy does not see
+  std::vector<std::vector<uint8_t>> unseen_;  // replace arrays that the policy does not see
   std::vector<float> vector_;                 // (R)
   std::vector<float> seen_;                   // (V)
   std::vector<uint8_t> frame_, pixels_;       // (C, H, W), (I, H, W)

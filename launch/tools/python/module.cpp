@@ -1,10 +1,10 @@
-// SPDX-License-Identifier: Apache-2.0
-// shoal_rl._native: what the Python package shoal-rl has of C++.
+// SPDX-License-Identifier: Apache-2.0 shoal_rl._native: the C++ part of the Python package
+// shoal-rl.
 //
-// Threads: every call holds Python's lock, so a process runs one call at a time; environments step
-// side by side in processes of their own (shoal_rl.make_vec). A call must not run Python code while
-// it holds a C++ lock, the guard of a static local variable included: Python code may pass the lock
-// of Python on to a thread that then waits for the C++ one for ever.
+// Threads: every call holds Python's lock (GIL), so a process runs one call at a time. Environments
+// step in parallel in separate processes (shoal_rl.make_vec). A call must not run Python code while
+// it holds a C++ lock, including the guard of a static local variable: Python code may pass the GIL
+// to a thread that then waits for the C++ lock for ever.
 //
 // Errors: shoal::Error is shoal_rl.Error, its message one line.
 #include <pybind11/numpy.h>
@@ -23,16 +23,17 @@ namespace py = pybind11;
 
 namespace {
 
-// pybind11 keeps NumPy's functions in a static local variable, which imports NumPy when it is first
-// used: Python code under a C++ guard. Two threads whose first calls meet there would wait for each
-// other. Used here, while the module is imported, the variable is initialised before any call.
+// pybind11 keeps NumPy's functions in a static local variable. Its first use imports NumPy, which
+// runs Python code under a C++ guard, so two threads with simultaneous first calls would deadlock.
+// This use, while the module is imported, initialises the variable before any call.
 void ImportNumpy() { py::array_t<float>(std::vector<py::ssize_t>{0}); }
 
 }  // namespace
 
 PYBIND11_MODULE(_native, module) {
   ImportNumpy();
-  // Lives as long as the process: translators have no argument to reach it by.
+  // Static, because exception translators have no argument through which they could reach the
+  // object.
   static py::object error =  // NOLINT: set once, when the module is loaded
       py::exception<shoal::Error>(module, "Error");
   error.attr("__module__") = "shoal_rl";

@@ -31,13 +31,13 @@ struct Arrays {
   Bytes pixels;
   std::vector<std::string> names;
   std::vector<Floats> blocks;
-  std::string first;                 // that was taken; it says what the next two are
-  std::optional<py::ssize_t> batch;  // N; 1 for one observation by itself
+  std::string first;                 // name of the first array; it determines the next two
+  std::optional<py::ssize_t> batch;  // N; 1 for a single observation
   bool single = false;               // without the dimension of the batch
 };
 
-// Notes how many observations an array holds, whose dimensions behind those of the batch are
-// `expected`. Throws Error on another shape, and where other arrays hold another number.
+// Stores how many observations the array holds. `expected` are its dimensions after that of the
+// batch. Throws Error if the shape differs, or if other arrays hold another number of observations.
 void CheckShape(const std::string& name, const py::array& array, const Shape& expected,
                 Arrays* arrays) {
   const std::span<const py::ssize_t> shape(array.shape(), size_t(array.ndim()));
@@ -60,7 +60,7 @@ void CheckShape(const std::string& name, const py::array& array, const Shape& ex
 }
 
 void TakePixels(const ObservationSpec& spec, const py::handle& value, Arrays* arrays) {
-  // Pixels scaled to floats would, converted back, be black.
+  // Refuse floats: pixels scaled to floats would become black when they are converted back.
   const bool bytes = py::isinstance<py::array_t<uint8_t>>(value);
   const Bytes pixels = bytes ? Bytes::ensure(value) : Bytes();
   if (!bytes || !pixels) throw UsageError("pixels: expected a numpy array of uint8, 0..255");
@@ -72,7 +72,7 @@ void TakeBlock(const ObservationSpec& spec, const std::string& name, const py::h
                Arrays* arrays) {
   const Floats block = Floats::ensure(value);
   if (!block) throw UsageError("block '{}': expected an array of numbers", name);
-  // A name that is not observed is refused, with those that are, by the policy.
+  // If a name is not observed, the policy refuses it and lists the observed names.
   if (const auto range = spec.Observed(name)) {
     CheckShape(fmt::format("block '{}'", name), block, {range->size}, arrays);
   }
@@ -104,7 +104,7 @@ py::array_t<float> Act(policy::TrainedPolicy& policy, const py::dict& observatio
   for (size_t i = 0; i < arrays.names.size(); ++i) {
     blocks.push_back({arrays.names[i], {arrays.blocks[i].data(), size_t(arrays.blocks[i].size())}});
   }
-  // None where no array is one of the policy's: it then says which one it misses.
+  // If there are no arrays, the policy refuses the call and names the missing one.
   const py::ssize_t count = arrays.batch.value_or(1);
   const py::ssize_t size = policy.spec().action_size;
   py::array_t<float> actions(arrays.single ? Shape{size} : Shape{count, size});

@@ -45,7 +45,7 @@ bool TruthOf(const py::handle& value) {
   return truth == 1;
 }
 
-// info["is_success"] or info["success"]; empty where it has neither.
+// info["is_success"] or info["success"]; empty if it has neither.
 std::optional<bool> SuccessIn(const py::handle& info) {
   if (!PyDict_Check(info.ptr())) return std::nullopt;
   for (const char* key : {"is_success", "success"}) {
@@ -118,7 +118,7 @@ PythonEnvironment::~PythonEnvironment() {
   try {
     if (py::hasattr(environment_, "close")) environment_.attr("close")();
   } catch (py::error_already_set& error) {
-    error.discard_as_unraisable("close");  // the process is about to leave
+    error.discard_as_unraisable("close");  // the process is about to exit
   }
   for (py::object* object : {&environment_, &reset_, &step_}) *object = py::object();
   leaves_.clear();

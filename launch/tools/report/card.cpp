@@ -28,7 +28,7 @@ std::string RewardText(const EvaluationFigures& final) {
   return fmt::format("{:.2f} +/- {:.2f}", final.return_mean, final.return_std);
 }
 
-// The names that leaderboards look for.
+// Uses the member names that leaderboards expect.
 ordered_json ResultsJson(const RunResults& run) {
   const EvaluationFigures& final = *run.final;
   ordered_json object{{"env_id", run.config.task},
@@ -105,7 +105,7 @@ void WriteCard(const fs::path& run_folder, const fs::path& folder) {
   MakeFolders(fresh);
   OpenToOthers(fresh);
   try {
-    const std::vector<fs::path> films = FilmsOf(run_folder);  // the first one goes along
+    const std::vector<fs::path> films = FilmsOf(run_folder);  // the card contains the first one
     WriteFileForOthers(fresh / "README.md", Readme(run, !films.empty()));
     WriteFileForOthers(fresh / "results.json", ResultsJson(run).dump(2) + "\n");
     WriteFileForOthers(fresh / kConfigFile, ReadFile(run_folder / kConfigFile));

@@ -24,7 +24,7 @@ void Flatten(const ordered_json& object, const std::string& prefix,
              std::vector<std::pair<std::string, std::string>>* keys) {
   for (const auto& [name, value] : object.items()) {
     const std::string path = prefix.empty() ? name : prefix + "." + name;
-    // Sections are one deep; what is an object below is a value.
+    // Sections are one level deep; an object below this level is a value.
     if (prefix.empty() && value.is_object()) {
       Flatten(value, path, keys);
     } else {
@@ -50,7 +50,7 @@ GroupFigures FiguresOf(const RunGroup& group, double target_success) {
   GroupFigures figures{.name = group.name};
   figures.failed = group.failed;
   figures.unevaluated = group.unevaluated;
-  // A failed run that is compared by itself is judged: there is nothing else to show.
+  // If a failed run is the only run of its group, show its figures: the group has no others.
   const bool alone = group.runs.size() == 1 && group.failed == std::vector{group.runs[0].name} &&
                      group.unevaluated.empty();
   figures.figures.failed = alone ? 0 : group.failed.size();
@@ -85,8 +85,8 @@ std::optional<Interval> IqmInterval95(const std::vector<double>& values) {
   return StratifiedBootstrap95({values}, InterquartileMean);
 }
 
-// The object of a mean with what only comparisons have: bootstrap95 of the mean, and the
-// interquartile mean with its own.
+// Adds the members that only comparisons have to the object of a mean: bootstrap95 of the mean, and
+// the interquartile mean with its own interval.
 ordered_json WithIqm(ordered_json object, const std::vector<double>& values) {
   const auto iqm = values.empty() ? std::nullopt : std::optional(InterquartileMean(values));
   object["bootstrap95"] = IntervalJson(BootstrapInterval95(values));
@@ -124,7 +124,7 @@ std::string FormatCounts(const std::vector<double>& values) {
 
 using Row = std::vector<std::string>;
 
-// Columns as wide as their widest cell; the first one to the left.
+// Makes each column as wide as its widest cell. The first column is left-aligned.
 std::string Table(const std::vector<Row>& rows) {
   std::vector<size_t> widths(rows[0].size());
   for (const Row& row : rows) {
@@ -157,10 +157,10 @@ std::string Notes(const Comparison& comparison) {
   return notes;
 }
 
-// Below four seeds it is the mean.
+// The interquartile mean of fewer than four seeds equals the mean.
 bool HasIqm(const GroupFigures& group) { return group.figures.returns.size() >= 4; }
 
-// A line for each group of enough seeds.
+// One line for each group with enough seeds.
 std::string Iqms(const Comparison& comparison) {
   std::string text;
   for (const GroupFigures& group : comparison.groups) {

@@ -66,7 +66,7 @@ std::vector<Sample> SamplesOf(const auto& points, PlotAxis axis, PlotFigure figu
   return samples;
 }
 
-// Linear between samples; empty outside of them.
+// Interpolates linearly between samples; empty outside of their range.
 std::optional<double> At(const std::vector<Sample>& samples, double x) {
   if (samples.empty() || x < samples.front().x || x > samples.back().x) return std::nullopt;
   const auto above = std::ranges::lower_bound(samples, x, {}, &Sample::x);
@@ -75,7 +75,7 @@ std::optional<double> At(const std::vector<Sample>& samples, double x) {
   return below->y + (above->y - below->y) * (x - below->x) / (above->x - below->x);
 }
 
-// Mean and range of the seeds' curves at the points of all of them.
+// Mean and range of the seeds' curves, at the union of the curves' points.
 std::vector<CurvePoint> OverSeeds(const std::vector<std::vector<Sample>>& seeds, size_t points) {
   std::vector<double> xs;
   for (const auto& samples : seeds) {
@@ -86,7 +86,7 @@ std::vector<CurvePoint> OverSeeds(const std::vector<std::vector<Sample>>& seeds,
   const size_t stride = std::max<size_t>(1, (xs.size() + points - 1) / points);
   std::vector<CurvePoint> curve;
   for (size_t i = 0; i < xs.size(); ++i) {
-    if (i % stride != 0 && i + 1 != xs.size()) continue;  // the last one always
+    if (i % stride != 0 && i + 1 != xs.size()) continue;  // the last point is always kept
     CurvePoint point{.x = xs[i]};
     for (const auto& samples : seeds) {
       const auto value = At(samples, xs[i]);

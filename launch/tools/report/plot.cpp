@@ -21,7 +21,8 @@ namespace fs = std::filesystem;
 constexpr std::chrono::seconds kDeadline{120};
 constexpr int kWidth = 900, kPanelHeight = 330;
 
-// Told apart by people with any colour vision, and on paper (Wong 2011, Nature Methods 8:441).
+// Colours that people with any colour vision can distinguish, also on paper (Wong 2011, Nature
+// Methods 8:441).
 constexpr std::array kColours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
                                  "#E69F00", "#56B4E9", "#000000"};
 
@@ -49,8 +50,8 @@ const char* FigureLabel(PlotFigure figure) {
   return "";
 }
 
-// Text in gnuplot's single quotes, in which only '' has a special meaning: in double quotes gnuplot
-// would run text between backticks as a shell command. Control characters are replaced.
+// Quotes text for gnuplot with single quotes, in which only '' is special. In double quotes,
+// gnuplot would run text between backticks as a shell command. Control characters are replaced.
 std::string Quoted(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) {
@@ -81,12 +82,12 @@ std::string SeedsOf(const RunGroup& group) {
                      group.runs.size() == 1 ? "" : "s");
 }
 
-// Which curves of a group a panel has.
+// The curves that a panel shows of a group.
 struct Drawn {
   bool evaluations = false, rollouts = false;
 };
 
-// Bands first and the actors' thin lines next: no curve of evaluations is hidden by them.
+// Draws bands first and the actors' thin lines next, so that they hide no curve of evaluations.
 std::string PanelCommands(const std::vector<RunGroup>& groups, size_t figure,
                           const std::vector<Drawn>& drawn, bool legend) {
   std::vector<std::string> parts;
@@ -190,7 +191,8 @@ std::string PlotScript(const Plot& plot, const std::vector<RunGroup>& groups,
 void Draw(const Plot& plot, const std::vector<RunGroup>& groups, const fs::path& output) {
   CheckWritable(output);
   const ScratchFolder scratch;
-  // Drawn beside it and moved there: a reader sees the old picture or the new one.
+  // Draw the picture in another file, then move it, so that a reader gets either the old or the new
+  // picture.
   const fs::path script = scratch.path() / "plot.gp",
                  drawn = scratch.path() / ("plot" + output.extension().string());
   WriteFileAtomically(script, PlotScript(plot, groups, drawn));

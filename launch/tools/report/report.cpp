@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kUsualTarget = 0.9;
-constexpr uintmax_t kLargestFilm = 2'000'000;  // bytes; a page of more is passed around no more
+constexpr uintmax_t kLargestFilm = 2'000'000;  // bytes; a larger page would be too large to send
 
 constexpr char kStyle[] = R"(
 body { font: 15px/1.5 system-ui, "DejaVu Sans", sans-serif; color: #222; max-width: 76rem;
@@ -57,7 +57,7 @@ std::string TableHtml(const Row& head, const std::vector<Row>& rows) {
   return html + "</table></div>\n";
 }
 
-// Leaves out columns in which no row has anything to say, as of a task without success or goals.
+// Leaves out columns that are empty in all rows, for example for a task without success or goals.
 std::string TableHtmlOfFilled(Row head, std::vector<Row> rows) {
   for (size_t column = head.size(); column-- > 0;) {
     const auto at = static_cast<std::ptrdiff_t>(column);
@@ -126,7 +126,7 @@ std::string ResultsHtml(const Comparison& comparison) {
   return html;
 }
 
-// Results of policies on other tasks than their own.
+// Results of policies on tasks other than their own.
 std::string TransferHtml(const std::vector<RunGroup>& groups) {
   std::vector<Row> rows;
   for (const RunGroup& group : groups) {
@@ -154,14 +154,14 @@ std::string TransferHtml(const std::vector<RunGroup>& groups) {
   return TableHtml({"", "trained on", "tested on", "return [95 %]", "success [95 %]"}, rows);
 }
 
-// {"learner.batch": 64} as "learner.batch = 64, ..."; "-" where nothing is set.
+// {"learner.batch": 64} as "learner.batch = 64, ..."; "-" if nothing is set.
 std::string FormatKeys(const nlohmann::ordered_json& set) {
   std::vector<std::string> keys;
   for (const auto& [key, value] : set.items()) keys.push_back(key + " = " + value.dump());
   return keys.empty() ? "-" : fmt::format("{}", fmt::join(keys, ", "));
 }
 
-// Definitions, which were fixed before the first run.
+// Definitions of the experiments, which were fixed before the first run.
 std::string DefinitionsHtml(const std::vector<Definition>& definitions) {
   std::string html;
   for (const Definition& definition : definitions) {
@@ -256,13 +256,13 @@ std::string CommandsHtml(const std::vector<std::string>& commands) {
   return fmt::format("<pre>{}</pre>\n", EscapeMarkup(fmt::format("{}", fmt::join(commands, "\n"))));
 }
 
-// The document without what only a file of its own may begin with.
+// The SVG element without the document's prologue, which only a separate file may have.
 std::string SvgElement(const std::string& document) {
   const size_t start = document.find("<svg");
   return start == std::string::npos ? "" : document.substr(start);
 }
 
-// Against env steps, which tell algorithms apart, and against wall time, which people wait for.
+// Draws curves over env steps, to compare algorithms, and over wall time, to compare waiting times.
 std::vector<std::string> DrawCurves(const std::string& title, const std::vector<RunGroup>& groups) {
   std::vector<std::string> curves;
   const std::vector<PlotFigure> figures = FiguresThereAre(groups);

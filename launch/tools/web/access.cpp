@@ -60,7 +60,7 @@ Access Gate::Decide(const Caller& caller) const {
   return loopback || known ? Access::kAllowed : Access::kNoToken;
 }
 
-// The port is left out of it: behind `ssh -L` it is another one.
+// The port is not compared, because behind `ssh -L` it differs.
 bool Gate::OwnName(std::string_view host) const {
   const std::string_view name = host.substr(0, host.rfind(':'));
   return name == "localhost" || name == listen_.address || name == "127.0.0.1";

@@ -21,13 +21,13 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kLook{200};  // between looks at whether the server ends
+constexpr milliseconds kLook{200};  // interval between checks whether the server ends
 
-// Set while a connection is only to be closed.
+// True while this thread must close a connection without an answer.
 thread_local bool closing_only = false;
 
-// Threads that deal with connections. One that finds all threads busy and the queue full is closed
-// by the thread that accepted it.
+// Threads that serve connections. If all threads are busy and the queue is full, the accepting
+// thread closes the connection.
 class ConnectionQueue final : public httplib::TaskQueue {
  public:
   ConnectionQueue(size_t threads, size_t most_waiting) : most_waiting_(most_waiting) {
@@ -83,8 +83,8 @@ class ConnectionQueue final : public httplib::TaskQueue {
   std::vector<std::thread> threads_;
 };
 
-// A connection whose request and answer have deadlines as wholes: a byte now and then does not keep
-// it.
+// A connection with one deadline for the whole request and one for the whole answer. Occasional
+// bytes do not extend a deadline.
 class BoundedStream final : public httplib::Stream {
  public:
   BoundedStream(int socket, const ServerLimits& limits, const std::atomic<bool>& ending)
@@ -111,7 +111,7 @@ class BoundedStream final : public httplib::Stream {
     return send(socket_, from, size, MSG_NOSIGNAL | MSG_DONTWAIT);
   }
   void get_remote_ip_and_port(std::string& ip, int& port) const override {
-    ip.clear();  // not used
+    ip.clear();  // required by the interface, not used
     port = 0;
   }
   void get_local_ip_and_port(std::string& ip, int& port) const override {
@@ -152,8 +152,7 @@ class BoundedStream final : public httplib::Stream {
   size_t next_ = 0, filled_ = 0;
 };
 
-// Reads the bytes that were not read yet: closing the socket with unread bytes would discard the
-// answer.
+// Reads the remaining bytes, because closing the socket with unread bytes would discard the answer.
 void Drain(int socket) {
   std::array<char, 4096> rest{};
   for (int i = 0; i < 64; ++i) {
@@ -161,7 +160,7 @@ void Drain(int socket) {
   }
 }
 
-// Not the library's own options: they let a second server listen on the same port.
+// Replaces the library's default options, which would let a second server listen on the same port.
 void OwnSocketOptions(socket_t socket) {
   const int yes = 1;
   setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
@@ -180,7 +179,7 @@ BoundedServer::BoundedServer(const ServerLimits& limits,
 
 bool BoundedServer::process_and_close_socket(socket_t socket) {
   const Descriptor closing(socket);
-  fcntl(socket, F_SETFD, FD_CLOEXEC);  // not for the programs that this one starts
+  fcntl(socket, F_SETFD, FD_CLOEXEC);  // child processes must not inherit it
   if (closing_only || ending_) return false;
   BoundedStream stream(socket, limits_, ending_);
   const bool answered = AnswerRequest(stream, [&](httplib::Request& request) {

@@ -7,7 +7,7 @@
 namespace shoal::launch {
 namespace {
 
-// Digits alone; empty where there are none, others, or too many.
+// Parses digits. Empty if the text is empty, has other characters, or is too large a number.
 std::optional<uint64_t> Number(std::string_view text) {
   uint64_t value = 0;
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -27,7 +27,7 @@ RangeAsked ParseByteRange(std::string_view header, uint64_t file_bytes, ByteRang
   const auto first = Number(from), last = Number(to);
   if ((!from.empty() && !first) || (!to.empty() && !last)) return RangeAsked::kWhole;
   if (!first && !last) return RangeAsked::kWhole;
-  if (!first) {  // the last so many bytes
+  if (!first) {  // the last `*last` bytes of the file
     if (*last == 0 || file_bytes == 0) return RangeAsked::kOutside;
     range->bytes = std::min(*last, file_bytes);
     range->offset = file_bytes - range->bytes;

@@ -9,7 +9,7 @@
 namespace shoal::launch {
 namespace {
 
-constexpr std::chrono::seconds kSilent{10};  // without a view: the coordinator is gone
+constexpr std::chrono::seconds kSilent{10};  // longest time without a view from a coordinator
 
 }  // namespace
 
@@ -28,7 +28,7 @@ std::shared_ptr<LiveRuns::Line> LiveRuns::LineTo(const std::filesystem::path& ru
 }
 
 RunClient& LiveRuns::Client(const std::filesystem::path& run, Line& line) {
-  // Also of a run that was joined: it may have ended, and another one begun in its folder.
+  // Resolve a joined run again, too: it may have ended, and another run begun in its folder.
   TargetOptions options{.run = run.string(), .peer = "", .secure = secure_};
   RunTarget target;
   try {
@@ -69,7 +69,7 @@ ReplyMessage LiveRuns::Order(const std::filesystem::path& run, const std::string
 }
 
 void LiveRuns::LeaveUnwatched(SteadyTime now) {
-  std::vector<std::shared_ptr<Line>> left;  // their networks are left after the lock
+  std::vector<std::shared_ptr<Line>> left;  // destroyed after the lock's release
   const MutexLock lock(mutex_);
   for (auto it = lines_.begin(); it != lines_.end();) {
     if (now - it->second->asked > kUnwatched) {

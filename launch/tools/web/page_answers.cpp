@@ -78,14 +78,14 @@ std::string TopAnswer(const RunViewMessage& view) {
                           {"rows", cells.rows},
                           {"progress", ProgressJson(FiguresOfView(view, Now()))},
                           {"events", events}};
-  // The view goes in as it is: `shoal top --json`, to the letter.
+  // The view is exactly the output of `shoal top --json`.
   return "{\"view\":" + TopJson(view) + "," + Text(rest).substr(1);
 }
 
 std::string RunsAnswer(const std::filesystem::path& dir, const std::vector<RunListing>& runs) {
   ordered_json keys = ordered_json::array();
   for (const LiveKey& live : LiveKeys()) {
-    if (live.key != "actors") keys.push_back(live.key);  // by `scale` alone
+    if (live.key != "actors") keys.push_back(live.key);  // only `scale` changes it
   }
   return "{\"runs\":" + RunListJson(dir, runs) + ",\"keys\":" + Text(keys) + "}";
 }

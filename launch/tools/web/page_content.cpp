@@ -16,8 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t kMostCurves = 8;            // runs; the longest unasked goes first
-constexpr std::chrono::seconds kRunsFor{2};  // an answer about all runs serves so long
+constexpr size_t kMostCurves = 8;            // runs; the least recently requested is dropped
+constexpr std::chrono::seconds kRunsFor{2};  // how long an answer about all runs is reused
 
 }  // namespace
 

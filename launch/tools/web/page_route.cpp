@@ -6,7 +6,7 @@
 namespace shoal::launch {
 namespace {
 
-// Between slashes; a path of more parts than any route has is cut off, and matches none.
+// Parts between slashes. A path with more parts than any route is cut off and matches no route.
 std::vector<std::string> Parts(std::string_view path) {
   constexpr size_t kMost = 5;
   std::vector<std::string> parts;

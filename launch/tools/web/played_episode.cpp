@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kMostKept = 4;  // runs
-constexpr int kNice = 10;        // the run's own processes come first
+constexpr int kNice = 10;        // lower priority than the run's own processes
 
 }  // namespace
 
@@ -40,13 +40,13 @@ void PlayedEpisodes::Play(const fs::path& run) {
   const CheckpointState state = ReadCheckpointFiles(checkpoint).state;
   const MutexLock lock(mutex_);
   if (playing_) throw RuntimeError("an episode is being played: ask again when it is ready");
-  if (thread_.joinable()) thread_.join();  // it has nothing left to do
+  if (thread_.joinable()) thread_.join();  // its work is done
   PlayedEpisode episode{.state = PlayedEpisode::State::kPlaying,
                         .checkpoint = checkpoint.filename().string(),
                         .env_steps = state.env_steps,
                         .updates = state.updates,
                         .seed = ++played_};
-  // The film of before stays to be seen until the new one is there.
+  // The previous film stays visible until the new one is ready.
   if (const auto it = episodes_.find(run); it != episodes_.end()) episode.film = it->second.film;
   while (episodes_.size() >= kMostKept && !episodes_.contains(run)) {
     std::error_code error;
@@ -60,7 +60,7 @@ void PlayedEpisodes::Play(const fs::path& run) {
 
 void PlayedEpisodes::PlayOn(const fs::path& run, PlayedEpisode episode,
                             const fs::path& checkpoint) {
-  // Priority of this thread, and so of the program that it starts.
+  // Sets the priority of this thread, which the program that it starts inherits.
   setpriority(PRIO_PROCESS, 0, kNice);
   const fs::path before =
       std::exchange(episode.film, scratch_.path() / fmt::format("{}.mp4", episode.seed));
@@ -73,7 +73,7 @@ void PlayedEpisodes::PlayOn(const fs::path& run, PlayedEpisode episode,
          .output = episode.film},
         [this] { return ending_ || StopRequested(); }, [](const std::string&) {});
     episode.state = film ? PlayedEpisode::State::kReady : PlayedEpisode::State::kNone;
-  } catch (const std::exception& e) {  // also of libraries: it would end the program
+  } catch (const std::exception& e) {  // any exception would end the program, also one of a library
     episode.state = PlayedEpisode::State::kFailed;
     episode.problem = e.what();
   }

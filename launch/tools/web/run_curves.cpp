@@ -22,10 +22,10 @@ using nlohmann::ordered_json;
 
 constexpr char kSuccess[] = "rollout_success", kReturn[] = "rollout_return",
                kEnvSteps[] = "env_steps_per_second", kUpdates[] = "updates_per_second";
-// Bytes of one line: a process reports about a hundred figures.
+// Bytes; longer lines are skipped. A process reports about a hundred figures per line.
 constexpr size_t kLongestLine = 64'000;
 
-// From whose lines a metric is taken.
+// True if the metric `name` is taken from lines of this role.
 bool Wanted(std::string_view role, std::string_view name) {
   if (role == "coordinator") return name == kSuccess || name == kReturn || name == kEnvSteps;
   if (name == kUpdates) return true;
@@ -84,7 +84,7 @@ void RunCurves::ReadMetrics(uint64_t most_bytes) {
   uint64_t read = 0;
   std::string line;
   while (read < most_bytes && std::getline(in, line)) {
-    if (in.eof()) break;  // its end has not been written yet
+    if (in.eof()) break;  // the line is not complete yet
     read += line.size() + 1;
     OnLine(line);
   }
@@ -93,7 +93,7 @@ void RunCurves::ReadMetrics(uint64_t most_bytes) {
 }
 
 void RunCurves::OnLine(const std::string& line) {
-  // Most lines are of actors and others: not parsed at all.
+  // Most lines are of other roles; skip them without parsing.
   const bool learner = line.find(R"("role":"learner")") != std::string::npos;
   if (line.size() > kLongestLine ||
       (!learner && line.find(R"("role":"coordinator")") == std::string::npos)) {
@@ -101,7 +101,8 @@ void RunCurves::OnLine(const std::string& line) {
   }
   const json object = ParseBoundedJson<json>(line);
   if (!object.is_object()) return;
-  // The learner's figures are those of the batch it drew last, the coordinator's those of now.
+  // The learner's figures belong to the env steps of its last batch, the coordinator's to the
+  // present ones.
   double env_steps = env_steps_;
   if (const auto steps = object.find("env_steps"); steps != object.end() && steps->is_number()) {
     env_steps = steps->get<double>();
@@ -114,7 +115,7 @@ void RunCurves::OnLine(const std::string& line) {
 }
 
 void RunCurves::ReadEvaluationFiles() {
-  // Evaluations are renamed into their folder, which has another time from then on.
+  // Each evaluation is renamed into the folder, which changes the folder's time.
   std::error_code error;
   const auto changed = std::filesystem::last_write_time(run_ / kEvaluationFolder, error);
   if (error || changed == evaluations_of_) return;
@@ -122,7 +123,7 @@ void RunCurves::ReadEvaluationFiles() {
     evaluations_ = ReadEvaluations(run_);
     evaluations_of_ = changed;
   } catch (const Error&) {
-    // A broken file: those of before stay, and `shoal report` says which it is.
+    // If a file is broken, the previous curve stays; `shoal report` names the file.
   }
 }
 

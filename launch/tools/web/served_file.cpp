@@ -17,7 +17,7 @@ constexpr size_t kMostListed = 200;
 constexpr size_t kLongestName = 128;
 
 struct Kind {
-  std::string_view folder, extension;  // folder: "" = the run's own
+  std::string_view folder, extension;  // folder: "" = the run's folder
   const char* type;
 };
 
@@ -27,7 +27,7 @@ constexpr Kind kKinds[] = {
     {"plots", ".svg", "image/svg+xml"},  {"plots", ".png", "image/png"},
 };
 
-// A plain name: neither hidden nor with anything that a path or a terminal takes for more.
+// True if the name is not hidden and has no character that is special in a path or a terminal.
 bool PlainName(std::string_view name) {
   constexpr std::string_view kSigns = "._-+=";
   return !name.empty() && name.size() <= kLongestName && name[0] != '.' &&
@@ -45,9 +45,9 @@ const Kind* KindOf(std::string_view folder, std::string_view name) {
   return nullptr;
 }
 
-// A plain file of a folder that is open.
+// Opens a plain file in an open folder.
 std::optional<ServedFile> OpenIn(int folder, const char* name, const char* type) {
-  // Not waiting for the writer of what might be a pipe.
+  // O_NONBLOCK: opening a pipe would wait for its writer.
   Descriptor file(openat(folder, name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   struct stat status {};
   if (file.get() < 0 || fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode)) {
@@ -64,7 +64,8 @@ std::optional<ServedFile> OpenServedFile(const fs::path& run, std::string_view p
   const std::string name(slash == std::string_view::npos ? path : path.substr(slash + 1));
   const Kind* kind = KindOf(folder, name);
   if (kind == nullptr) return std::nullopt;
-  // Part by part and without following links: what was looked at is what is opened.
+  // Opens each part without following links, so that the file that was checked is the file that is
+  // opened.
   Descriptor in(open(run.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (in.get() >= 0 && !folder.empty()) {
     in = Descriptor(

@@ -28,15 +28,15 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kJson[] = "application/json";
-constexpr int kMostFiles = 4;  // handed out at once: the other threads are for the rest
+constexpr int kMostFiles = 4;  // served at once; the other threads serve the other requests
 
-// The page runs only its own scripts; the library that draws sets styles.
+// The page runs only its own scripts. Inline styles are allowed for the plotting library.
 constexpr char kPagePolicy[] =
     "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' "
     "data:; "
     "media-src 'self'; connect-src 'self'; base-uri 'none'; form-action 'none'; "
     "frame-ancestors 'none'";
-// Files of a run are looked at and do nothing, whatever is in them.
+// Files of a run are shown without running scripts, whatever they contain.
 constexpr char kFilePolicy[] =
     "sandbox; default-src 'none'; style-src 'unsafe-inline'; img-src data:; media-src 'self' data:";
 
@@ -65,7 +65,7 @@ void AddHeaders(httplib::Response& response) {
   response.set_header("Cache-Control", "no-store");
 }
 
-// Folder of the only run that is shown; empty = all of the folder.
+// Folder of the only run that is shown; empty = all runs of the folder.
 fs::path OnlyRun(const WebOptions& options) {
   if (options.run.empty()) return {};
   return fs::weakly_canonical(FindNamed(options.run, RunsIn(options.run_dir)));
@@ -78,7 +78,7 @@ struct WebServer::Impl {
   ~Impl();
 
   Caller CallerOf(const httplib::Request& request) const;
-  // Answers a caller without the right; true if it did.
+  // Refuses a caller without permission. Returns true if it has answered.
   bool TurnedAway(const httplib::Request& request, httplib::Response& response) const;
   void Answer(const httplib::Request& request, httplib::Response& response);
   void AnswerRoute(const PageRoute& route, const httplib::Request& request,
@@ -88,11 +88,11 @@ struct WebServer::Impl {
                   httplib::Response& response);
   std::string CookieName() const { return fmt::format("{}_{}", kTokenCookie, listen.port); }
 
-  ListenAddress listen;  // with the port that it got
+  ListenAddress listen;  // with the actual port
   const std::string token = MakeToken();
   const std::map<std::string, PagePart> parts = LoadPageParts();
   PageContent content;
-  std::atomic<int> files = 0;  // being handed out
+  std::atomic<int> files = 0;  // being served
   std::atomic<bool> ended = false;
   BoundedServer server;
   std::thread thread;
@@ -165,7 +165,7 @@ bool WebServer::Impl::TurnedAway(const httplib::Request& request,
     Refuse(415, "encoded bodies are not taken", response);
     return true;
   }
-  // The parts of the page are asked for without the address's token.
+  // The browser requests the parts of the page without the address's token, so a cookie carries it.
   if (!caller.query_token.empty() && EqualInConstantTime(caller.query_token, token)) {
     response.set_header(
         "Set-Cookie", fmt::format("{}={}; HttpOnly; SameSite=Strict; Path=/", CookieName(), token));
@@ -178,7 +178,7 @@ void WebServer::Impl::Answer(const httplib::Request& request, httplib::Response&
   try {
     AnswerRoute(route, request, response);
   } catch (const Error& e) {
-    // A run that does not run, or what it refuses: the state of things, not a fault.
+    // The run does not run, or refuses the request: not a fault of the server.
     Refuse(e.exit_code() == 2 ? 400 : 409, e.what(), response);
   } catch (const std::exception& e) {
     Refuse(500, e.what(), response);
@@ -263,7 +263,7 @@ const std::string& WebServer::token() const { return impl_->token; }
 std::string WebServer::Url() const {
   ListenAddress shown = impl_->listen;
   std::array<char, 256> name{};
-  // Every address of this host: others know it by its name.
+  // The server listens on all addresses of this host, so show the host's name.
   if (shown.address == "0.0.0.0" && gethostname(name.data(), name.size() - 1) == 0) {
     shown.address = name.data();
   }
