@@ -29,7 +29,7 @@ class Hosting {
       newest_ = one.get();
       environments.push_back(std::move(one));
     }
-    InstallStopSignals();  // the user's code may have taken them
+    InstallStopSignals();  // the user's code may have replaced them
     return environments;
   }
 

@@ -15,7 +15,7 @@ OpenedEnvironment OpenOfLibrary(const Config& config, Purpose) {
   tasks::EnvironmentDescription description = environment->Describe();
   description.id = config.env.id;
   description.task = config.task;
-  // Refuses what the JSON of another program would be refused for.
+  // The way through JSON applies the same checks as to a description from another program.
   return {tasks::EnvironmentFromJson(ToJson(description)), std::move(environment)};
 }
 

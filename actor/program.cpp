@@ -27,7 +27,7 @@
 namespace shoal::actor {
 namespace {
 
-// An exit code where the command line asked for nothing but help or the version.
+// Returns an exit code if the command line only asked for help or the version.
 std::optional<int> Parse(int argc, char** argv, Options* options) {
   const auto app = MakeCommandLine(options);
   if (const auto exit_code = ParseCommandLine(app.get(), argc, argv)) return exit_code;
@@ -38,8 +38,7 @@ std::optional<int> Parse(int argc, char** argv, Options* options) {
   return std::nullopt;
 }
 
-// The answer goes into a file for the program that started this one: a user's task may print to
-// standard output.
+// Writes the answer to a file for the calling program: a user's task may print to standard output.
 void Answer(const Options& options, const std::string& json) {
   if (options.json.empty()) {
     std::cout << json << std::endl;
@@ -91,7 +90,7 @@ int RunActor(const Options& options, const EnvironmentFactory& make) {
 int RunActorProgram(int argc, char** argv, const ActorParts& parts) {
   Options options;
   if (const auto exit_code = Parse(argc, argv, &options)) return *exit_code;
-  nn::SetThreads(1);  // one thread per actor: cores are filled with actors
+  nn::SetThreads(1);  // one thread per actor, because actors fill the cores
   if (options.describe) return Describe(options, parts);
   parts.add_tasks(ReadRunConfig(options.run));
   InstallStopSignals();

@@ -16,7 +16,7 @@
 namespace shoal::actor {
 namespace {
 
-// Times of one environment, measured over some steps of an episode.
+// Mean times of one environment over some steps of an episode.
 struct StepCosts {
   double frame_microseconds = 0;  // drawing a frame, all cameras
   double step_microseconds = 0;   // a whole env step
@@ -30,7 +30,7 @@ StepCosts MeasureSteps(worlds::Environment& environment) {
   const std::vector<float> action(static_cast<size_t>(spec.action_size));
   const worlds::ObservationOut out{.frame = frame, .vector = vector};
   environment.Reset(StreamKey(0, StreamRole::kEvalEnvironment, 0),
-                    out);  // the first frame prepares much
+                    out);  // the first frame also prepares the renderer
   const double before = environment.render_seconds();
   const SteadyTime start = Now();
   int steps = 0;
@@ -39,7 +39,7 @@ StepCosts MeasureSteps(worlds::Environment& environment) {
       const worlds::StepResult result = environment.Step(action, out);
       running = !result.terminated && !result.truncated;
     }
-  } catch (const worlds::EpisodeFault&) {  // training will count it
+  } catch (const worlds::EpisodeFault&) {  // training counts faults; a measurement ignores them
   }
   const double each = 1e6 / std::max(1, steps);
   return {.frame_microseconds = each * (environment.render_seconds() - before),

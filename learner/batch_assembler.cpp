@@ -9,7 +9,7 @@
 namespace shoal::learner {
 namespace {
 
-// Bounds the memory that a malformed part count can claim; batches have tens of parts.
+// Bounds the memory that a malformed part count can claim. Batches have tens of parts.
 constexpr uint32_t kMaxParts = 65'536;
 
 }  // namespace
@@ -61,7 +61,7 @@ BatchAssembler::Verdict BatchAssembler::Add(const BatchPart& part) {
   if (--slot->missing == 0) {
     slot->whole = Tiled(*slot);
     if (slot->whole) return Verdict::kCompleted;
-    slot->pieces.clear();  // the request is sent again
+    slot->pieces.clear();  // the request will be sent again
     return Verdict::kMalformed;
   }
   return same_answer || empty ? Verdict::kTaken : Verdict::kStartedOver;

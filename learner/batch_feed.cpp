@@ -10,7 +10,8 @@
 namespace shoal::learner {
 namespace {
 
-// Members are in construction order: subscribers, which end first, write to what is above them.
+// Members are in construction order. The readers end first, because they use the members above
+// them.
 class ReplayFeed final : public BatchFeed {
  public:
   ReplayFeed(const RunConfig& run, uint64_t learner_session, uint64_t updates, link::Hub& hub)
@@ -23,7 +24,7 @@ class ReplayFeed final : public BatchFeed {
   BatchStream& stream() override { return source_; }
 
  private:
-  // Without a matched reader the transport would take the request and lose it.
+  // Without a matched reader the transport would accept the request and lose it.
   bool Ask(const SampleRequest& request) {
     return requests_.Matched() > 0 && requests_.Write(request);
   }

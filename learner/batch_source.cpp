@@ -14,9 +14,9 @@
 namespace shoal::learner {
 namespace {
 
-// A request that could not be sent is tried again after this long.
+// Delay before a request that could not be sent is tried again.
 constexpr std::chrono::milliseconds kRetryAfter{100};
-constexpr std::chrono::seconds kRefusalInterval{10};  // between lines about it
+constexpr std::chrono::seconds kRefusalInterval{10};  // between log lines about refusals
 
 uint64_t LastRequest(const Config& config) {
   return config.lockstep ? LockstepLastUpdate(config) : std::numeric_limits<uint64_t>::max();
@@ -70,6 +70,7 @@ void BatchSource::OnPart(const BatchPart& part) {
       arrived_.NotifyOne();
       return;
   }
+  // A part delays the repetition of the request; a complete batch needs none.
   if (Outstanding* outstanding = Find(part.request)) {
     outstanding->next_send =
         verdict == Verdict::kCompleted ? SteadyTime::max() : Now() + resend_after_;
@@ -126,7 +127,7 @@ std::optional<Batch> BatchSource::Next(SteadyTime deadline) {
     if (Now() >= deadline) return std::nullopt;
     arrived_.WaitUntil(mutex_, std::min(deadline, NextDue()));
   }
-  SendDue();  // the replay works on the next ones while this one is used
+  SendDue();  // the replay draws the next batches while this one is used
   return batch;
 }
 
@@ -207,6 +208,7 @@ std::vector<SampleRequest> BatchSource::TakeDue() {
 
 void BatchSource::TryAgain(const std::vector<uint64_t>& unsent) {
   for (Outstanding& o : outstanding_) {
+    // An earlier copy of the request may have been answered meanwhile.
     if (!std::ranges::count(unsent, o.request) || Whole(o.request)) continue;
     o.sent = false;
     o.next_send = Now() + kRetryAfter;
@@ -255,7 +257,7 @@ std::optional<Batch> BatchSource::OpenSlot(uint64_t request) {
   }
 }
 
-// Whatever comes, not more than a line in a while.
+// Logs at most one line in kRefusalInterval.
 void BatchSource::SayRefusal(const char* why) {
   if (refusal_said_ && Now() - *refusal_said_ < kRefusalInterval) return;
   refusal_said_ = Now();

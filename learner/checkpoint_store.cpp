@@ -32,7 +32,7 @@ CheckpointStore::CheckpointStore(const fs::path& run_folder, const RunConfig& ru
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(folder_)) {
     const std::string name = entry.path().filename();
-    if (name.starts_with(".step_")) fs::remove_all(entry.path(), ignored);
+    if (name.starts_with(".step_")) fs::remove_all(entry.path(), ignored);  // of a killed process
   }
 }
 
@@ -47,6 +47,7 @@ std::optional<Checkpoint> CheckpointStore::RestoreNewest() {
         log::Warning("{} was written with another configuration: going on with the present one",
                      name);
       }
+      // Sets refused checkpoints aside, so that the next start does not try them again.
       for (const fs::path& path : refused) {
         std::error_code ignored;
         fs::remove_all(folder_ / ("refused_" + path.filename().string()), ignored);
@@ -86,11 +87,11 @@ void CheckpointStore::Retry(const std::set<std::string>& wanted, bool now) {
 void CheckpointStore::WriteKept(const std::set<std::string>& wanted) {
   tried_ = Now();
   faults_.Try("checkpoint", [&] {
-    CheckWritable(folder_ / ".new");  // a run that was moved away is not made anew
+    CheckWritable(folder_ / ".new");  // do not recreate the folder of a run that was moved away
     while (!unwritten_.empty()) {
       const Unwritten& next = unwritten_.front();
       WriteCheckpoint(folder_, next.state, next.learner, next.policy, run_, Meta(next.state));
-      // A copy of the folder can be evaluated and filmed without its run.
+      // The configuration lets a copy of the folder be evaluated and filmed without the run.
       WriteFileAtomically(folder_ / CheckpointName(next.state.updates) / kConfigFile, config_text_);
       unwritten_.pop_front();
     }
@@ -127,7 +128,7 @@ std::vector<uint64_t> CheckpointStore::Existing() const {
   return existing;
 }
 
-// Renames the folder first, so that no reader finds a checkpoint with half of its files.
+// Renames the folder first, so that no reader finds a checkpoint with only some of its files.
 void CheckpointStore::Remove(const std::string& name) {
   std::error_code error;
   const fs::path going = folder_ / ("." + name + ".old");

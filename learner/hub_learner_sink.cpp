@@ -8,9 +8,9 @@
 namespace shoal::learner {
 namespace {
 
-// Each part has a place of its own in what the transport keeps for late joiners: the newest version
-// takes the places of the one before. False: some part was not taken; a reader then lacks it and
-// waits for the next version.
+// Each part has its own place in the history that the transport keeps for late joiners, so the
+// newest version replaces the preceding one. False: a part was not accepted. A reader that lacks a
+// part waits for the next version.
 template <class Part>
 bool SendParts(const WeightsMessage& weights, link::Writer<Part>& publisher) {
   bool sent = true;
@@ -34,10 +34,10 @@ bool HubLearnerSink::Publish(const EvalWeightsMessage& weights) {
   return SendParts(weights, evaluation_weights_);
 }
 
-// A report that cannot be sent is no loss: the next one holds the same totals.
+// A report that cannot be sent is not lost: the next one contains the same totals.
 void HubLearnerSink::Publish(const MetricsMessage& report) { metrics_.Write(report); }
 
-// The link keeps the last one for late joiners.
+// The link keeps the latest progress for late joiners.
 void HubLearnerSink::Publish(const LearnerProgress& progress) { progress_.Write(progress); }
 
 }  // namespace shoal::learner

@@ -104,6 +104,7 @@ std::optional<CheckpointState> LearnerProgram::Restore() {
 
 int LearnerProgram::Resize(int threads) {
   try {
+    // The count comes from a command to the running learner, so a bad one is reported and ignored.
     if (threads < 1) throw UsageError("learner.threads = {}: expected at least 1", threads);
     CheckCores("learner.threads", threads, ReadCoreLimits());
     agent_.Resize(threads);

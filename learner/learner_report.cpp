@@ -9,8 +9,8 @@
 namespace shoal::learner {
 namespace {
 
-// Frames are megabytes, and other replicas wait for the thread that looks at them. A few batches of
-// a report say as much as all of them.
+// Frame figures read megabytes while the other replicas wait, and a few batches represent all
+// batches of a report.
 constexpr int kFrameFiguresEvery = 16;  // updates
 
 }  // namespace

@@ -14,7 +14,7 @@
 namespace shoal::learner {
 namespace {
 
-// Set on the way: a second start would be one too many.
+// Set before the program restarts itself, so that it restarts only once.
 constexpr char kGuard[] = "SHOAL_OPENMP_SET";
 
 }  // namespace

@@ -18,7 +18,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kPoll{100};            // the longest that control is not looked at
+constexpr milliseconds kPoll{100};            // longest time between looks at control
 constexpr milliseconds kBlockedAfter{1'000};  // without a batch
 
 }  // namespace
@@ -44,6 +44,7 @@ TrainingLoop::TrainingLoop(const Parts& parts, const std::optional<CheckpointSta
 }
 
 TrainingLoop::End TrainingLoop::Run() {
+  // On policy, GiveAwaitedWeights sends the restored weights.
   if (parts_.agent.updates() > 0 && !on_policy_) weights_.Send(env_steps_);
   bool lost = false;
   while (!lost && !StopRequested() && parts_.control.state() != RunState::kStopping) {
@@ -95,7 +96,7 @@ UpdateOutcome TrainingLoop::Update(const BatchView& batch) {
     const SteadyTime now = Now();
     seconds_.update[static_cast<size_t>(stage)] +=
         std::chrono::duration<double>(now - std::exchange(since, now)).count();
-    // An update of a whole rollout may take a minute: who says nothing is taken for hung.
+    // An update of a whole rollout may take a minute, and a silent process is taken for hung.
     if (on_policy_) Report();
   });
   updating_ = false;
@@ -109,7 +110,7 @@ void TrainingLoop::AfterUpdate(const Batch& batch, const UpdateFigures& figures)
   request_ = batch.request;
   report_.OnUpdate(figures, batch, updates);
   if (on_policy_) {
-    TellProgress();  // the budget is judged by whole rollouts
+    TellProgress();  // the budget counts whole rollouts
     GiveAwaitedWeights();
   } else {
     const ScopedSeconds timed(seconds_.weights);
@@ -125,6 +126,7 @@ void TrainingLoop::AfterUpdate(const Batch& batch, const UpdateFigures& figures)
 void TrainingLoop::GiveAwaitedWeights() {
   const ScopedSeconds timed(seconds_.weights);
   if (given_weights_ == parts_.agent.updates()) return weights_.Retry(env_steps_);
+  // Without new weights the actors begin no further rollout.
   if (env_steps_ >= budget_ || drain_start_) return;
   given_weights_ = parts_.agent.updates();
   weights_.Send(env_steps_);
@@ -138,7 +140,7 @@ void TrainingLoop::MakeEvaluationPoint() {
   if (evaluations_asked_.size() > LearnerProgress::kMostEvaluations) {
     evaluations_asked_.erase(evaluations_asked_.begin());
   }
-  TellProgress();  // before anybody can answer: what was not asked for is refused
+  TellProgress();  // announced first: an evaluation that was not announced is refused
   const ScopedSeconds timed(seconds_.weights);
   evaluations_.Send(name, env_steps_);
 }
@@ -181,7 +183,7 @@ void TrainingLoop::Drain() {
     drain_start_ = waiting_since_ = Now();
     log::Info("draining");
   }
-  if (drained_) {  // the parameters stay those of the last evaluation point
+  if (drained_) {  // the parameters must stay those of the last evaluation point
     SleepFor(kPoll);
     return;
   }
@@ -201,7 +203,7 @@ bool TrainingLoop::DrainingIsOver() const {
   const SteadyTime now = Now();
   if (now - *drain_start_ > kDrainMost || now - waiting_since_ > parts_.drain_idle) return true;
   if (config_.lockstep) return parts_.agent.updates() >= LockstepLastUpdate(config_);
-  // Batches asked for before draining began may be older than it.
+  // Up to request_credits batches may have been drawn before draining began.
   return drain_batches_ > config_.learner.request_credits && RatioReached();
 }
 
@@ -224,6 +226,7 @@ void TrainingLoop::ApplySettings() {
   evaluations_.SetInterval(values.eval_interval, env_steps_);
   ApplyThreads(values.learner_threads.value_or(threads_asked_));
   if (values.samples_per_insert == samples_per_insert_) return;
+  // A new ratio applies to later steps only; earlier ones keep their grant.
   granted_before_ = GrantedSamples(env_steps_);
   granted_from_steps_ = std::max(env_steps_, granted_from_steps_);
   samples_per_insert_ = values.samples_per_insert;

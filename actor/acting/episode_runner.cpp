@@ -86,7 +86,7 @@ void EpisodeRunner::AddToFigures(std::span<const float> action, const worlds::St
 }
 
 void EpisodeRunner::CompleteFigures() {
-  // A sum until here. An episode of one step has no pair of actions to compare.
+  // Turns the sum of action differences into a mean. An episode of one step has no difference.
   if (figures_.length > 1) figures_.action_smoothness /= figures_.length - 1;
   figures_.final_distance = distance_;
 }

@@ -11,7 +11,7 @@
 namespace shoal::actor {
 namespace {
 
-// Noise that carries nothing over from step to step.
+// Noise that keeps no state between steps.
 class Memoryless : public Exploration {
  public:
   void BeginEpisode(int) override {}
@@ -63,7 +63,8 @@ class Gaussian final : public Memoryless {
   float now_ = 0;
 };
 
-// An on-policy algorithm's own draw; no factor, since the log-probability is the policy's.
+// The distribution of an on-policy algorithm. No factor scales its deviation, because the recorded
+// log-probability belongs to the policy itself.
 class PolicyDraw final : public Memoryless {
  public:
   void OnEnvSteps(uint64_t) override {}

@@ -15,7 +15,7 @@
 namespace shoal::actor {
 namespace {
 
-// While there is no board to read yet.
+// Interval between looks while no board can be read yet.
 constexpr std::chrono::milliseconds kFirstLooks{50};
 
 std::string ToText(const BoardAddress& address) {
@@ -24,7 +24,7 @@ std::string ToText(const BoardAddress& address) {
       .dump();
 }
 
-// Throws Error or nlohmann's.
+// Throws Error or nlohmann::json::exception.
 BoardAddress ReadAddress(const std::filesystem::path& file) {
   const auto json = ParseBoundedJson<nlohmann::json>(ReadFile(file));
   return {.pid = json.at("pid").get<int32_t>(),
@@ -32,7 +32,7 @@ BoardAddress ReadAddress(const std::filesystem::path& file) {
           .token = json.at("token").get<std::array<uint64_t, 2>>()};
 }
 
-// By the third field of /proc/PID/stat, behind the name in brackets.
+// Reads the third field of /proc/PID/stat. The field follows the name in brackets.
 bool IsStopped(int32_t pid) {
   try {
     const std::string stat = ReadFile(fmt::format("/proc/{}/stat", pid));
@@ -57,7 +57,8 @@ HostWeights::HostWeights(const std::filesystem::path& run, const std::string& ho
 std::optional<ReceivedWeights> HostWeights::TryTake() {
   if (const SteadyTime now = Now(); !receives() && now >= next_look_) Look(now);
   auto weights = receives() ? inbox_.TryTake() : reader_ ? reader_->TryTake() : std::nullopt;
-  // Who begins to receive is sent again what it has read.
+  // A process that takes over the subscription receives versions again that it has already read
+  // from the board.
   if (!weights || !weights->version.NewerThan(taken_)) return std::nullopt;
   taken_ = weights->version;
   return weights;
@@ -82,8 +83,8 @@ bool HostWeights::TryReceiveForHost() {
     board_ = std::make_unique<WeightsBoard>(spec_hash_);
     WriteFileAtomically(address_file_, ToText(board_->address()));
   } catch (const Error& e) {
-    // The lock stays: a neighbour that took it would fail as well, and a process that cannot read a
-    // board receives for itself.
+    // Keeps the lock: a neighbour that took the lock would fail as well, and a process that cannot
+    // read a board receives the weights itself.
     board_.reset();
     ReceiveAlone(e.what());
     return true;

@@ -42,8 +42,8 @@ static_assert(std::endian::native == std::endian::little);
 static_assert(offsetof(Board, newest) == 32 && sizeof(Board) == 72);
 static_assert(sizeof(Version) == 56);
 
-// Words that one process writes while others read. What was written before a store(release) is seen
-// by each reader that load(acquire)s it.
+// A word that one process writes while others read. A reader that load(acquire)s the word sees
+// everything that was written before its store(release).
 std::atomic_ref<uint64_t> Word(uint64_t& word) {
   static_assert(std::atomic_ref<uint64_t>::is_always_lock_free);
   return std::atomic_ref<uint64_t>(word);
@@ -86,6 +86,7 @@ void WeightsBoard::Post(const ReceivedWeights& weights) {
                         .env_steps = weights.env_steps};
   Descriptor& memory = versions_[number_ % 2];
   try {
+    // Frees the older of two versions. Readers may still open the latest one.
     memory.Close();
     memory = SharedMemory::MakeOf(
         "shoal-weights",
@@ -126,8 +127,8 @@ std::optional<ReceivedWeights> WeightsBoardReader::TryTake() {
   const auto descriptor =
       static_cast<int32_t>(Word(place.descriptor).load(std::memory_order_relaxed));
   const uint64_t bytes = Word(place.bytes).load(std::memory_order_relaxed);
-  // Two newer ones may have come meanwhile, or the process may be gone: then other memory lies
-  // there, or none.
+  // The writer may have posted two newer versions meanwhile, or its process may have ended. The
+  // descriptor then belongs to other memory, or to none.
   failed_ = true;
   std::shared_ptr<const SharedMemory> memory;
   try {

@@ -17,7 +17,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kPoll{100};
-constexpr std::chrono::seconds kReportDeadline{10};  // for the transport to take an evaluation
+constexpr std::chrono::seconds kReportDeadline{10};  // for the transport to accept an evaluation
 constexpr milliseconds kRetry{20};
 
 }  // namespace
@@ -60,7 +60,7 @@ void EvalActor::Evaluate(const ReceivedWeights& weights) {
     Report("evaluating");
     return StopRequested() || control_.state() == RunState::kStopping;
   });
-  if (std::cmp_less(episodes.size(), run_.config.eval.episodes)) return;  // stopped half-way
+  if (std::cmp_less(episodes.size(), run_.config.eval.episodes)) return;  // stopped early
   const EvaluationLabel label{.policy = "checkpoint",
                               .checkpoint = weights.checkpoint,
                               .version = weights.version,

@@ -58,7 +58,7 @@ EvaluationAggregate Aggregate(const std::vector<EpisodeResult>& episodes, bool h
     mean += episode.episode_return / n;
     length += episode.length / n;
     faulty += result.fault.has_value();
-    if (!std::isfinite(episode.final_distance)) continue;  // no task of goals, or never begun
+    if (!std::isfinite(episode.final_distance)) continue;  // no goals, or the episode never began
     distance += episode.final_distance;
     ++distances;
   }
@@ -75,7 +75,7 @@ EvaluationAggregate Aggregate(const std::vector<EpisodeResult>& episodes, bool h
   return aggregate;
 }
 
-// In the order in which they are asked.
+// Counts in the order of `causes`.
 std::vector<std::pair<std::string, size_t>> FailureCounts(
     std::span<const FailureCause> causes, const std::vector<EpisodeResult>& episodes) {
   std::vector<std::pair<std::string, size_t>> counts;
@@ -118,8 +118,8 @@ void Evaluator::Begin(int e, const EpisodeStream& stream, Played* played) {
     player.episode = played->begun++;
     player.begun = false;
     const uint64_t key = stream.Key(player.episode);
-    // Only a policy without weights draws: uniform random actions, apart from the environment's
-    // draws.
+    // Only a policy without weights draws here: its actions are uniform and have a stream apart
+    // from the environment's.
     selector_.BeginEpisode(e, HashWords({key, static_cast<uint64_t>(StreamRole::kEvalPolicy)}));
     try {
       player.runner.Begin(key, {frame_, vector_});
@@ -163,7 +163,7 @@ void Evaluator::End(const Player& player, std::optional<worlds::FaultCause> faul
 std::vector<EpisodeResult> Evaluator::Play(int episodes, const EpisodeStream& stream,
                                            const std::function<bool()>& stop,
                                            const std::function<void(int ended)>& on_ended) {
-  for (Player& player : players_) player.runner.Abandon();  // of a call that was stopped
+  for (Player& player : players_) player.runner.Abandon();  // left by a stopped call
   Played played;
   played.results.resize(static_cast<size_t>(episodes));
   played.ended.resize(played.results.size());
@@ -171,6 +171,7 @@ std::vector<EpisodeResult> Evaluator::Play(int episodes, const EpisodeStream& st
   int told = 0;
   while (played.done < episodes) {
     if (stop()) {
+      // Later episodes are left out: those that have ended are the short ones.
       const auto first_missing = std::ranges::find(played.ended, false);
       played.results.resize(static_cast<size_t>(first_missing - played.ended.begin()));
       return played.results;
@@ -221,7 +222,7 @@ ordered_json EvaluationJson(const RunConfig& run, const EvaluationLabel& label,
 
 namespace {
 
-// A card (shoal card) has the policy alone.
+// A card (shoal card) contains the policy's files only.
 CheckpointFiles FilesToActBy(const std::filesystem::path& checkpoint, uint64_t spec_hash) {
   if (std::filesystem::exists(checkpoint / kLearnerFile)) {
     return ReadCheckpointFiles(checkpoint, spec_hash);
@@ -243,6 +244,7 @@ ordered_json EvaluateCheckpoint(const std::filesystem::path& run_folder,
   const RunConfig trained = ReadRunConfig(run_folder);
   RunConfig run =
       evaluation.task.empty() ? trained : environments.with_task(trained, evaluation.task);
+  // A recorder listens to one environment only.
   if (evaluation.frames) run.config.eval.envs = 1;
   CheckpointFiles files = FilesToActBy(checkpoint, trained.spec.Hash());
   const EvaluationLabel label{.policy = "checkpoint",

@@ -58,6 +58,7 @@ std::string_view NameOf(FailureCause cause) {
 
 FailureFacts::FailureFacts(const ObservationSpec& spec, const tasks::Task& task)
     : threshold_(task.distance_threshold()) {
+  // A Point holds at most three numbers.
   if (task.goal_size() == 0 || task.goal_size() > 3) return;
   const auto achieved = spec.Recorded(task.achieved_goal().name);
   const auto desired = spec.Recorded(task.desired_goal().name);
@@ -103,7 +104,7 @@ void FailureFacts::Step(std::span<const float> vector) {
   highest_ = std::max(highest_, now_[2] - start_[2]);
   lowest_ = std::min(lowest_, now_[2] - start_[2]);
   if (!angle_) return;
-  // Euler angles about x, y, z: the up axis of the object, seen from the world, has this height.
+  // Height of the object's up axis, seen from the world. `angle` holds Euler angles about x, y, z.
   const Point angle = Read(vector, *angle_);
   const double up = std::cos(angle[0]) * std::cos(angle[1]);
   most_tilted_ = std::max(most_tilted_, std::acos(std::clamp(up, -1.0, 1.0)));
@@ -112,11 +113,13 @@ void FailureFacts::Step(std::span<const float> vector) {
 bool FailureFacts::Lifts() const { return goal_[2] - start_[2] > threshold_; }
 
 FailureCause FailureFacts::CauseOfObject() const {
+  // Several causes may apply. The first one in this order counts.
   if (lowest_ <= -kFallen) return FailureCause::kLeftTheTable;
   if (farthest_moved_ < kTouched) return FailureCause::kNeverTouched;
   if (Lifts() && highest_ < kLifted) return FailureCause::kNotLifted;
   if (Lifts() && now_[2] - start_[2] < kOnTheTable) return FailureCause::kDropped;
   if (most_tilted_ >= kTipped) return FailureCause::kTipped;
+  // Displacement along the straight line from the start to the goal.
   double along = 0;
   for (size_t i = 0; i < 3; ++i) along += (now_[i] - start_[i]) * (goal_[i] - start_[i]);
   along /= std::max(first_distance_, 1e-9);

@@ -9,8 +9,8 @@
 namespace shoal::actor {
 namespace {
 
-// The part of a spec that gives the sizes of a network's inputs and outputs, without task, model,
-// cameras and further blocks of records.
+// A spec with only what sets the sizes of a network's inputs and outputs: without task, model,
+// cameras and unobserved blocks.
 ObservationSpec Sizes(ObservationSpec spec) {
   spec.task.clear();
   spec.model_fingerprint.clear();

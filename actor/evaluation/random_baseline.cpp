@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// m; the task's own threshold joins them.
+// m; the task's own threshold is added.
 constexpr double kThresholds[] = {0.01, 0.02, 0.03, 0.05, 0.075, 0.1, 0.15, 0.2, 0.3, 0.5};
 
 ordered_json SuccessByThreshold(const tasks::Task& task,
@@ -54,7 +54,7 @@ ordered_json PlayRandom(const RandomRequest& request, const std::function<bool()
   run.config.observation.pixels = false;
   run.config.observation.proprioception = true;
   run.spec = worlds::MakeEnvironment(run.config, nullptr)->spec();
-  Evaluator evaluator(run, noop);  // its policy never gets weights: uniform random actions
+  Evaluator evaluator(run, noop);  // this policy never receives weights: actions are uniform
   const EpisodeStream stream{request.seed, StreamRole::kFinalEnvironment, 0};
   const std::vector<EpisodeResult> episodes = evaluator.Play(request.episodes, stream, stop);
   if (std::cmp_less(episodes.size(), request.episodes)) {

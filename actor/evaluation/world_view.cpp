@@ -44,7 +44,7 @@ Config ViewConfig(const RunConfig& run, const FrameRecorder::Options& options) {
   observation.height = options.height;
   observation.width = options.width;
   observation.stack = 1;
-  // No policy acts by the view: it shows the goal's marker also where the policy must not see it.
+  // The view feeds no policy, so it may show the goal's marker although the policy must not see it.
   observation.goal_mode = "none";
   config.replay.hindsight = "none";
   if (!options.quality.empty()) {
@@ -59,7 +59,7 @@ std::unique_ptr<worlds::Environment> MakeView(const Config& config) {
   return worlds::MakeEnvironment(config, worlds::MakeRenderContext(config.observation));
 }
 
-// The time that an env step takes in the world; 0 = unknown. Plays one step.
+// Plays one step. Returns the time that an env step takes in the simulated world, 0 = unknown.
 uint32_t StepMicroseconds(worlds::Environment& environment, worlds::ObservationOut out) {
   try {
     environment.Reset(0, out);
@@ -72,12 +72,12 @@ uint32_t StepMicroseconds(worlds::Environment& environment, worlds::ObservationO
   }
 }
 
-// Equal episodes are equally faulty.
+// The view repeats the policy's episode, so a fault of the view alone means that the two differ.
 [[noreturn]] void ThrowParted(const worlds::EpisodeFault& fault) {
   throw RuntimeError("the view's environment went another way than the policy's: {}", fault.what());
 }
 
-// (3, H, W) to (H, W, 3).
+// Converts (3, H, W) to (H, W, 3).
 void Interleave(std::span<const uint8_t> planes, std::span<uint8_t> pixels) {
   const size_t plane = planes.size() / 3;
   for (size_t i = 0; i < plane; ++i) {

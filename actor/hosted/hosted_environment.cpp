@@ -53,7 +53,7 @@ double HostedEnvironment::Distance() const {
 float HostedEnvironment::Reset(uint64_t stream_key, worlds::ObservationOut out) {
   {
     const ScopedSeconds timed(call_seconds_);
-    // 31 bits: some environments seed generators that take no more.
+    // 31 bits: some environments pass the seed to generators that accept no more.
     raw_->Reset(static_cast<uint32_t>(stream_key >> 33));
   }
   steps_ = 0;

@@ -17,7 +17,7 @@ namespace {
 using tasks::ArraySpace;
 using tasks::EnvironmentDescription;
 
-// Keys that say how Shoal's own worlds move and look.
+// Refuses keys that apply only to Shoal's own worlds.
 void RefuseWorldKeys(const Config& config) {
   const Config usual;
   const std::pair<const char*, bool> keys[] = {
@@ -47,6 +47,7 @@ std::vector<std::string> ChooseImages(const EnvironmentDescription& environment,
         "expected false",
         environment.id);
   }
+  // The default names cameras of Shoal's own worlds; here it selects every image.
   if (asked == ObservationConfig().cameras) return images;
   for (const std::string& name : asked) {
     if (std::ranges::count(images, name) > 0) continue;
@@ -76,6 +77,7 @@ void AddPixels(const EnvironmentDescription& environment, const ObservationConfi
 void AddBlocks(const EnvironmentDescription& environment, const ObservationConfig& observation,
                ObservationSpec* spec) {
   const StateBlocks& seen = observation.proprioception;
+  // A policy without pixels observes every block unless the key names some.
   const bool all = seen.all || (!seen && !spec->HasPixels());
   std::set<std::string> names(seen.names.begin(), seen.names.end());
   const tasks::Task task = TaskOf(environment);

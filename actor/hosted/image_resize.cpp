@@ -18,8 +18,8 @@ SHOAL_CPU_CLONES void AddWeighted(const uint32_t* from, size_t count, uint32_t w
 }
 
 SHOAL_CPU_CLONES void Divide(const uint32_t* sums, size_t count, uint32_t total, uint8_t* to) {
-  // Below 2^32 a double holds every sum exactly, and a quotient that is no whole number is farther
-  // from the next one than the error of the product.
+  // A double holds every sum below 2^32 exactly. A quotient that is not an integer is farther from
+  // the next integer than the rounding error of the product.
   const double share = 1.0 / total;
   for (size_t x = 0; x < count; ++x) {
     to[x] = uint8_t((double(sums[x]) + 0.5 * total) * share + 1e-10);

@@ -21,7 +21,7 @@ bool IsBounded(const ArraySpace& space) {
   return std::ranges::any_of(space.low, finite) || std::ranges::any_of(space.high, finite);
 }
 
-// Frames are grey where a camera has one channel.
+// Frames are grey if each camera has one channel.
 bool IsGrey(const ObservationSpec& spec) { return spec.channels == int(spec.cameras.size()); }
 
 }  // namespace
@@ -76,7 +76,7 @@ void ObservationMapping::CheckNumbers(std::span<const float> numbers, int64_t st
   }
 }
 
-// Many environments leave their bounds by a rounding error, so that training goes on.
+// Only warns: many environments leave their bounds by a rounding error.
 void ObservationMapping::WarnOutside(size_t element, float value, int64_t steps,
                                      Block* block) const {
   block->warned = true;

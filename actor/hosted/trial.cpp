@@ -19,22 +19,22 @@ namespace {
 constexpr std::chrono::seconds kTrial{2};
 constexpr size_t kMostTrialSteps = 1000, kRepeatedSteps = 50;
 
-constexpr double kRewardTolerance = 1e-4;  // relative; of a threshold, the distance within it
+constexpr double kRewardTolerance = 1e-4;  // relative, of rewards and of the threshold
 
-// The course of an episode: hashes of the first observation, then of each step.
+// One episode: hashes of the first observation, then of each step.
 struct Played {
   std::vector<uint64_t> moments;
-  bool success = false;        // a step said whether it succeeds
-  std::string other_reward{};  // of the first step whose reward the goal does not give
+  bool success = false;        // a step reported whether it succeeded
+  std::string other_reward{};  // first reward that differs from the goal's
 };
 
-// Compares rewards with what the replay would compute from the goals.
+// Compares rewards with those that the replay computes from the goals.
 class GoalRewards {
  public:
   explicit GoalRewards(const tasks::EnvironmentDescription& description)
       : description_(description), task_(TaskOf(description)) {}
 
-  // Empty if the reward is right, or too near the threshold to say.
+  // Empty if the reward is right, or if the distance is too near the threshold to judge.
   std::string Fault(const RawEnvironment& environment, double reward, size_t step) const {
     if (!description_.goal) return "";
     const double distance = task_.Distance(Goal(environment, tasks::kAchievedGoal),
@@ -70,7 +70,8 @@ uint64_t HashOf(const RawEnvironment& environment,
   return hash;
 }
 
-// Random actions of a seed until the episode ends, `most` moments are played or `end` has come.
+// Plays random actions of a seed until the episode ends, `most` moments are played or `end` is
+// reached.
 Played Play(RawEnvironment& environment, const tasks::EnvironmentDescription& description,
             uint64_t seed, size_t most, SteadyTime end) {
   const GoalRewards rewards(description);

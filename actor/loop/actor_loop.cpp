@@ -22,7 +22,7 @@ ActorLoop::End ActorLoop::Run(const Progress& progress) {
   return Drain(progress) ? End::kAllStored : End::kUnstored;
 }
 
-// One turn; returns what to report of it.
+// Runs one turn. Returns the state to report.
 const char* ActorLoop::Advance() {
   const auto turn = parts_.pace.Next(parts_.rollout.vector_steps(), parts_.selector.version());
   if (turn == Pace::Turn::kAwaitWeights) {
@@ -35,7 +35,7 @@ const char* ActorLoop::Advance() {
   return "running";
 }
 
-// A look for the weights that the pace wants; the learner makes them of what is stored.
+// Looks for the weights that the pace needs. The learner makes them from stored records.
 void ActorLoop::AwaitWeights() {
   const SteadyTime now = parts_.now();
   if (!awaiting_until_) awaiting_until_ = now + parts_.pace.patience();
@@ -61,7 +61,8 @@ void ActorLoop::TakeWeights() {
   }
 }
 
-// The window is full or shut. Sends the records of open chunks, so that the replay can store them.
+// The window is full or has no credit. Sends the records of open chunks, so that the replay can
+// store them and grant more.
 void ActorLoop::AwaitCredit() {
   const SteadyTime start = Now();
   const double publishing_before = parts_.sender.publish_seconds();
@@ -70,7 +71,8 @@ void ActorLoop::AwaitCredit() {
   blocked_seconds_ += SecondsSince(start) - (parts_.sender.publish_seconds() - publishing_before);
 }
 
-// Until everything made is stored. False when the deadline, or another request to stop, came first.
+// Waits until every made record is stored. False if the deadline passes or stopping is requested
+// again.
 bool ActorLoop::Drain(const Progress& progress) {
   const ChunkWindow& window = parts_.sender.window();
   parts_.sender.Flush();

@@ -24,7 +24,8 @@ Pace::Turn LockstepPace::Next(int64_t vector_steps, const WeightsVersion& versio
   } else if (version.update < update_) {
     return Turn::kAwaitWeights;
   }
-  // Between two phases only: a budget reached within one is played to that phase's end.
+  // The actor rests only between two phases: if the budget is reached within a phase, the phase is
+  // completed.
   const bool at_phase_start =
       phase_ > 0 && vector_steps == LockstepVectorStepsAtPhaseEnd(config_, phase_ - 1);
   const bool budget_reached = vector_steps * config_.envs_per_actor >= config_.env_steps;

@@ -13,7 +13,7 @@
 namespace shoal::actor {
 namespace {
 
-constexpr int kMostAttempts = 100;  // to begin an episode
+constexpr int kMostAttempts = 100;  // to begin one episode
 
 }  // namespace
 
@@ -47,6 +47,7 @@ Rollout::Rollout(const Options& options, const ObservationSpec& spec,
 
 bool Rollout::TryStep() {
   if (owed_.empty()) owed_.assign(slots_.size(), true);
+  // After a faulty episode the environment begins another episode and still owes its step.
   while (const auto owing = static_cast<size_t>(std::ranges::count(owed_, true))) {
     if (sink_.Room() < static_cast<size_t>(MostRecordsOfStep(goal_pictures_)) * owing) return false;
     {
@@ -108,7 +109,8 @@ int Rollout::CutAfter(int e) const {
 
 void Rollout::ResetRunner(int e, int cut_after, uint8_t* record) {
   Slot& slot = slots_[static_cast<size_t>(e)];
-  // A task that cannot begin at all would be asked for ever where max_faulty_share allows it.
+  // Attempts are bounded: with a high max_faulty_share, a task that can never begin would loop
+  // forever.
   for (int attempts = 1;; ++attempts) {
     slot.episode = made_.TakeEpisode(static_cast<uint32_t>(e));
     slot.actions.clear();
@@ -130,7 +132,8 @@ void Rollout::BeginEpisode(int e, int cut_after) {
   uint8_t* record = sink_.BeginRecord();
   ResetRunner(e, cut_after, record);
   if (goal_pictures_) {
-    // The picture is known once the reset is: the reset waits while the goal goes first.
+    // The goal's record precedes the reset's, but its picture exists only after the reset. The
+    // reset is kept aside meanwhile.
     reset_.assign(record, record + layout_.record_bytes());
     PublishGoal(e, record);
     record = sink_.BeginRecord();
@@ -166,7 +169,7 @@ bool Rollout::StepOne(int e) {
   try {
     result = slot.runner.Step(action, {layout_.Frame(record), layout_.Vector(record)});
   } catch (const worlds::EpisodeFault& fault) {
-    OnFault(e, fault);  // the next step or reset begins the open record again
+    OnFault(e, fault);  // the next step or reset reuses the open record
     return false;
   }
 
@@ -240,7 +243,7 @@ uint64_t Rollout::StreamKeyOf(StreamRole role, int e) const {
 
 void Rollout::FillHeader(int e, RecordKind kind, RecordHeader* header) const {
   const Slot& slot = slots_[static_cast<size_t>(e)];
-  // A step of the warm-up was chosen by no weights.
+  // Actions of the warm-up are uniform and depend on no weights.
   const WeightsVersion version =
       uniform_ && kind == RecordKind::kStep ? WeightsVersion() : selector_.version();
   header->weights_session = version.session;

@@ -27,8 +27,7 @@ uint32_t Crc(const std::string& text) {
   return Crc32({reinterpret_cast<const uint8_t*>(text.data()), text.size()});
 }
 
-// Actions and noise travel as the bits of their floats: the decimal ones of JSON would have to be
-// read back exactly.
+// Floats are written as their bits, because a decimal number in JSON need not be read back exactly.
 ordered_json ToJson(const EpisodeState& state) {
   ordered_json actions = ordered_json::array();
   for (const float action : state.actions) actions.push_back(std::bit_cast<uint32_t>(action));

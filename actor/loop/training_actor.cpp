@@ -19,11 +19,12 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// For a predecessor to drain.
+// Covers the time in which a predecessor drains.
 constexpr std::chrono::seconds kLockDeadline = ActorLoop::kDrainDeadline + std::chrono::seconds(15);
 constexpr milliseconds kLastReportDeadline{500};
 
-// In lockstep, where the receiver of the records remembers the episodes that go on.
+// Whether an actor continues its episodes exactly: in lockstep, if the receiver of the records
+// remembers unfinished episodes.
 bool GoesOnExactly(const Config& config) { return config.lockstep && !LearnsOnPolicy(config); }
 
 ChunkWindow::Options WindowOptions(const RunConfig& run, uint32_t id, uint64_t session,
@@ -99,7 +100,7 @@ ActorLoop::End TrainingActor::RunLoop(ActorLoop& loop, ActorReport& report) {
       if (report.Due(Now()) || last) metrics_.Write(report.Make(state));
     });
   } catch (const SupersededError& e) {
-    // Our successor's session must come after that one.
+    // This actor's successor needs a session above the one that superseded this actor.
     NextSession(folder_, ProcessName::Actor(id_).Text(),
                 static_cast<int64_t>(std::min<uint64_t>(e.session(), INT64_MAX)));
     throw;

@@ -27,7 +27,7 @@ void ChunkSender::Exchange(SteadyTime deadline) {
     window_.Flush();
     last_flush_ = now;
   }
-  // Nothing of ours lies with the replay: there is no progress to wait for.
+  // Without a sent record that awaits its acknowledgement, there is no progress to wait for.
   if (!window_.HasUnstoredSent()) last_progress_ = now;
   if (now - std::min(last_progress_, last_heard_) > kResendAfter) {
     window_.Rewind();

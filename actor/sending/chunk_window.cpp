@@ -12,7 +12,8 @@ namespace shoal::actor {
 ChunkWindow::ChunkWindow(const Options& options)
     : options_(options),
       stored_(options.records_before),
-      // The replay learns of us by what we send before its first word.
+      // The replay discovers this actor by its first records, so some may be sent before any
+      // credit.
       allowed_(options.records_before + options.first_records),
       last_sequence_(options.records_before) {
   CHECK(options.chunks >= 3 && options.chunk_records >= 1 && options.record_bytes > 0);
@@ -70,6 +71,7 @@ std::optional<TransitionChunk> ChunkWindow::NextToSend() const {
   message.actor = options_.actor;
   message.session = options_.session;
   if (position_due_) {
+    // A message without records tells a restarted replay where the kept records begin.
     message.first_sequence = FirstKept();
     return message;
   }
@@ -92,7 +94,7 @@ void ChunkWindow::MarkSent() {
 
 void ChunkWindow::OnCredit(const Credit& credit) {
   if (credit.actor != options_.actor || credit.session != options_.session) return;
-  if (credit.replay_session < replay_session_) return;  // a late word of a replay that is gone
+  if (credit.replay_session < replay_session_) return;  // a late credit of an earlier replay
   if (credit.replay_session > replay_session_) {
     const bool restarted = replay_session_ != 0;
     replay_session_ = credit.replay_session;
@@ -121,7 +123,7 @@ std::optional<int64_t> ChunkWindow::OldestUnstoredNs() const {
 
 void ChunkWindow::Rewind() {
   unsent_from_ = 0;
-  position_due_ = FirstKept() > 1;  // before the first record was stored there is nothing to say
+  position_due_ = FirstKept() > 1;  // nothing to announce before the first record was stored
 }
 
 }  // namespace shoal::actor

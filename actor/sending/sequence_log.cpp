@@ -24,9 +24,10 @@ namespace {
 
 constexpr char kMagic[9] = "SHOALMD1";
 
-// In SequenceLogHeader::rebuilt: no count of an actor's own.
+// Value of SequenceLogHeader::rebuilt if the counters are not the actor's own count.
 constexpr uint32_t kRebuilt = 1;
-// More episodes than an actor can have begun beyond what the receiver of its records has seen.
+// More episodes than an actor can have begun after the last one that the receiver of its records
+// has seen.
 constexpr uint32_t kUnseenEpisodes = 100'000;
 
 struct PageContent {
@@ -69,7 +70,7 @@ std::vector<PageContent> ReadPages(const std::filesystem::path& run) {
   return pages;
 }
 
-// The episodes of `page` follow those of another session with the same environments.
+// Makes the episodes of `page` follow those of another session with the same environments.
 void GoOnAfter(const PageContent& old, PageContent* page) {
   const uint32_t first = page->header.first_env, count = page->header.env_count;
   for (uint32_t i = 0; i < old.header.env_count; ++i) {
@@ -80,7 +81,7 @@ void GoOnAfter(const PageContent& old, PageContent* page) {
   }
 }
 
-// A complete page appears under its name or none: written beside, then renamed.
+// Writes beside and renames, so that a page is complete whenever its name exists.
 void WritePage(const std::filesystem::path& path, const PageContent& page) {
   std::string bytes(reinterpret_cast<const char*>(&page.header), sizeof page.header);
   bytes.append(reinterpret_cast<const char*>(page.next_episode.data()),
@@ -149,7 +150,7 @@ std::vector<DamagedPage> FindDamagedPages(const std::filesystem::path& run) {
     try {
       const SequenceLogHeader header = ReadPage(path).header;
       if (named && header.actor == page.actor && header.session == page.session) continue;
-    } catch (const Error&) {
+    } catch (const Error&) {  // an unreadable page is damaged
     }
     if (!named) {
       throw UsageError("'{}' is no counter page of an actor of this run: remove it", path.string());
@@ -173,10 +174,10 @@ void RebuildSequenceLog(const std::filesystem::path& run, uint32_t actor, uint64
   for (const auto& path : PagesOf(run)) {
     try {
       GoOnAfter(ReadPage(path), &page);
-    } catch (const Error&) {  // another damaged one, which is rebuilt as well
+    } catch (const Error&) {  // another damaged page, which is rebuilt as well
     }
   }
-  // Each episode has a record or more, so that none of these numbers has been used.
+  // Each episode has at least one record, so episode numbers from here on are unused.
   const double begun = static_cast<double>(made) + kUnseenEpisodes;
   for (uint32_t& next : page.next_episode) next = SaturatingCast<uint32_t>(next + begun);
   WritePage(SequenceLogFile(run, actor, session), page);

@@ -11,14 +11,14 @@
 namespace shoal::worlds {
 namespace {
 
-// Room for decoration that a user's model may add to its own geoms and sites.
+// Spare geoms for decoration, beside the geoms and sites of a user's model.
 constexpr int kSpareGeoms = 100;
 
 mjvCamera EngineCamera(const CameraView& camera) {
   mjvCamera view;
   mjv_defaultCamera(&view);
   if (camera.model_camera >= 0) {
-    view.type = mjCAMERA_FIXED;  // the engine's word for any camera of the model
+    view.type = mjCAMERA_FIXED;  // in the engine, any camera of the model
     view.fixedcamid = camera.model_camera;
     return view;
   }

@@ -10,7 +10,7 @@
 
 namespace shoal::worlds {
 
-// Cart, then pole.
+// The joints are the cart's, then the pole's.
 constexpr int kJoints = 2, kActuators = 1, kEngineSteps = 1;
 constexpr double kNoise = 0.01;  // standard deviation of every coordinate and velocity at the start
 

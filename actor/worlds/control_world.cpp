@@ -57,7 +57,7 @@ void ControlWorld::AdvanceControl(int engine_steps) {
   if (model().opt.integrator == mjINT_RK4) {
     Advance(engine_steps);
   } else {
-    // The first half of this engine step was done at the end of the control step before.
+    // The preceding control step has already done the first half of this engine step (mj_step1).
     mj_step2(&model(), &data());
     Advance(engine_steps - 1);
   }

@@ -93,6 +93,7 @@ CameraView ChooseCamera(const World& world, const ObservationConfig& observation
 std::vector<std::string> ChooseCameras(const World& world, const ObservationConfig& observation) {
   if (observation.cameras != ObservationConfig().cameras) return observation.cameras;
   const std::vector<std::string> names = NamesOf(CamerasOf(world));
+  // The default names cameras of the Fetch tasks; other tasks may lack them.
   const bool all = std::ranges::all_of(observation.cameras, [&](const std::string& name) {
     return observation.custom_cameras.contains(name) ||
            std::ranges::find(names, name) != names.end();

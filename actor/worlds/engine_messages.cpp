@@ -23,7 +23,8 @@ std::atomic<int64_t> warnings{0};
 
 void CountWarning(const char* message) {
   ++warnings;
-  // Texts are few (one per kind of warning and place), so the map stays small; still bounded.
+  // There is one text for each kind of warning and place, so the map stays small. Its size is
+  // bounded nevertheless.
   constexpr size_t kMostTexts = 256;
   static Mutex mutex;
   static std::map<std::string, int64_t> counts;

@@ -13,13 +13,13 @@ namespace shoal::worlds {
 namespace {
 
 constexpr double kMetresPerAction = 0.05;
-// Pointing down; the engine normalises it.
+// The gripper points down. The engine normalises the quaternion.
 constexpr double kDownQuaternion[4] = {1, 0, 1, 0};
-constexpr double kStartOffset[3] = {-0.498, 0.005, -0.431};  // of the mocap body from the grip site
+constexpr double kStartOffset[3] = {-0.498, 0.005, -0.431};  // mocap body relative to the grip site
 constexpr int kSetupEnvSteps = 10;
 constexpr int kMostStepsToGoal = 20;  // env steps of MoveTo
 constexpr double kNearGoal = 1e-3;    // m
-constexpr double kPull = 0.7;         // share of what lacks, added in each of these steps
+constexpr double kPull = 0.7;         // share of the remaining error that each of these steps adds
 
 }  // namespace
 
@@ -47,7 +47,7 @@ FetchArm::FetchArm(World* world, const FetchArmSetup& setup, Physics physics)
   PrepareWeld(world, mocap_body, gripper_body_, physics);
 }
 
-// Every actuator is taken for a finger's position servo.
+// Takes every actuator for a finger's position servo.
 void FetchArm::FindMotors() {
   const mjModel& model = world_->model();
   for (int i = 0; i < model.nu; ++i) {
@@ -133,7 +133,7 @@ void FetchArm::MoveTo(const std::array<double, 3>& position, double opening) {
     double squared = 0;
     for (size_t i = 0; i < 3; ++i) {
       const double away = position[i] - grip[i];
-      // The weld gives way where the arm is stretched: what lacks is added up.
+      // The weld yields when the arm is stretched, so the remaining error is accumulated.
       data.mocap_pos[3 * static_cast<size_t>(mocap_) + i] += kPull * away;
       squared += away * away;
     }

@@ -7,8 +7,8 @@ namespace {
 // The camera of Gymnasium-Robotics.
 CameraView Gymnasium() { return {"gymnasium", {1.3, 0.75, 0.55}, 2.5, 132, -14}; }
 
-// On the gripper, whose x axis points from the wrist to the fingers: from above and outside of
-// them.
+// Mounted on the gripper, whose x axis points from the wrist to the fingers. Looks at the fingers
+// from above and from outside.
 CameraView Wrist() { return {"wrist", {0.1, 0, 0.06}, 0.4, 0, -45, "robot0:gripper_link"}; }
 
 }  // namespace

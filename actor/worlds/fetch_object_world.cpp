@@ -14,12 +14,12 @@
 namespace shoal::worlds {
 namespace {
 
-constexpr double kLeastDistance = 0.1;  // of the object from the grip, m
-constexpr double kHighestGoal = 0.45;   // above the table, m
+constexpr double kLeastDistance = 0.1;  // m, between object and grip
+constexpr double kHighestGoal = 0.45;   // m, above the table
 constexpr double kShareInTheAir = 0.5;
-constexpr double kAboveGoal = 0.1;       // the grip of GripperAtGoal::kAbove, m
-constexpr double kFingersApart = 0.025;  // from the middle: half the width of the block, m
-constexpr double kOutOfTheWay = 10;      // z from which the object falls while the arm moves, m
+constexpr double kAboveGoal = 0.1;  // m, height of the grip above the goal (GripperAtGoal::kAbove)
+constexpr double kFingersApart = 0.025;  // m, from the middle: half the width of the block
+constexpr double kOutOfTheWay = 10;  // m, height from which the object falls while the arm moves
 constexpr double kUnturned[4] = {1, 0, 0, 0};
 
 constexpr FetchObjectSetup kPush{
@@ -30,8 +30,8 @@ constexpr FetchObjectSetup kPush{
     .object = {1.25, 0.53, 0.4},
     .object_range = 0.15,
     .goal_range = 0.15};
-// The puck starts 1 cm inside the table; what it has become of that when the set-up ends, tilted
-// and spinning, belongs to the published task.
+// The puck starts 1 cm inside the table. The set-up leaves it tilted and spinning; that start is
+// part of the published task.
 constexpr FetchObjectSetup kSlide{
     .model = "fetch_slide.xml",
     .cameras = FetchSlideCameras,
@@ -115,7 +115,7 @@ void FetchObjectWorld::MoveToGoal() {
   const bool around = setup_.gripper_at_goal == GripperAtGoal::kAround;
   std::array<double, 3> grip = goal();
   if (setup_.gripper_at_goal == GripperAtGoal::kAbove) grip[2] += kAboveGoal;
-  // Nothing is in the arm's way, and nothing is pushed by it.
+  // Keeps the object away, so that the arm neither meets nor pushes it.
   SetObject({goal()[0], goal()[1], kOutOfTheWay});
   if (setup_.gripper_at_goal != GripperAtGoal::kStart) {
     moving_arm().MoveTo(grip, around ? kFingersApart : 0);

@@ -11,8 +11,8 @@
 namespace shoal::worlds {
 namespace {
 
-// The first numbers of solimp (impedance at both ends of its width) and solref (time constant in s,
-// damping ratio); the width is 0.001 m in all.
+// The first numbers of solimp (impedance at both ends of its width) and of solref (time constant in
+// s, damping ratio). The width is always 0.001 m.
 struct Stiffness {
   double impedance[2], reference[2];
 };
@@ -27,7 +27,7 @@ void SetStiffness(mjModel* model, int constraint, const Stiffness& stiffness) {
   std::copy_n(stiffness.reference, 2, model->eq_solref + mjNREF * constraint);
 }
 
-// First constraint of this type between the two bodies, -1 = none.
+// Index of the first constraint of this type between the two bodies, -1 = none.
 int FindConstraint(const mjModel& model, int type, int body, int other) {
   for (int i = 0; i < model.neq; ++i) {
     if (model.eq_type[i] == type && model.eq_obj1id[i] == body && model.eq_obj2id[i] == other) {

@@ -21,7 +21,7 @@ void FetchWorld::ResetTo(const std::array<double, 3>& goal,
   goal_ = goal;
   arm_.RestoreInitialState();
   PlaceObject(object_xy);
-  // The target's marker sits on a body that neither moves nor turns.
+  // The body that carries the target's marker neither moves nor turns.
   const double* body = model().body_pos + 3 * model().site_bodyid[target_site_];
   PlaceSite(target_site_, std::array{goal[0] - body[0], goal[1] - body[1], goal[2] - body[2]});
   mj_forward(&model(), &data());

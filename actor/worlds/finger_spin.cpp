@@ -10,7 +10,7 @@
 
 namespace shoal::worlds {
 
-// Proximal, distal, spinner.
+// The joints are proximal, distal and spinner.
 constexpr int kJoints = 3, kActuators = 2, kEngineSteps = 2;
 constexpr double kHingeDamping = 0.03;  // N m s/rad
 constexpr double kSpin = -15;           // rad/s
@@ -26,7 +26,7 @@ FingerSpin::FingerSpin(const std::string& model_file)
       touch_top_(model().sensor_adr[SensorId("touchtop")]),
       touch_bottom_(model().sensor_adr[SensorId("touchbottom")]) {
   model().dof_damping[model().jnt_dofadr[JointId("hinge")]] = kHingeDamping;
-  // Marks of the suite's other tasks on this model.
+  // Hides marks that belong to the suite's other tasks on this model.
   for (const int site : {tip_, SiteId("target")}) model().site_rgba[4 * site + 3] = 0;
 }
 

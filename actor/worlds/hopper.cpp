@@ -22,11 +22,12 @@ constexpr double kResetNoise = 0.005;
 constexpr double kHealthyReward = 1, kControlCost = 1e-3;
 constexpr double kLowestHealthyZ = 0.7;       // m
 constexpr double kLargestHealthyPitch = 0.2;  // rad
-constexpr double kLargestHealthyState = 100;  // of every other coordinate and every velocity
+constexpr double kLargestHealthyState = 100;  // bound of every other coordinate and velocity
 constexpr double kLargestVelocityShown = 10;
 constexpr double kDensity = 1000;  // kg/m3
 
-// MuJoCo up to 2.1.0 took a capsule of half length h and radius r for a cylinder of length 2 h + r.
+// MuJoCo up to 2.1.0 computed mass and inertia of a capsule of half length h and radius r like a
+// cylinder of length 2 h + r.
 struct OldCapsule {
   const char* body;
   double radius, half_length;  // m
@@ -46,7 +47,7 @@ void WriteOldMasses(mjModel* model) {
     const double mass = kDensity * M_PI * r * r * length;
     const int body = FindBody(*model, capsule.body);
     model->body_mass[body] = mass;
-    // The principal frame is the capsule's own: its axis comes last.
+    // The capsule's own frame is the principal frame, with the capsule's axis last.
     double* inertia = model->body_inertia + 3 * body;
     inertia[0] = inertia[1] = mass * (3 * r * r + length * length) / 12;
     inertia[2] = mass * r * r / 2;
@@ -55,7 +56,7 @@ void WriteOldMasses(mjModel* model) {
   mj_setConst(model, data.get());
 }
 
-// Changed before the world takes it, so that its fingerprint is the variant's.
+// Changes the model before the world takes it, so that the fingerprint is that of the variant.
 ModelHandle LoadVariant(const HopperVariant& variant, const std::string& model_file) {
   ModelHandle model = LoadModel("hopper.xml", model_file);
   CheckModelSizes(*model, kJoints, kActions);

@@ -19,7 +19,7 @@ struct Vertex {
 
 using Ring = std::vector<Vertex>;
 
-// `slices` vertices around the z axis. elevation_rad: of their normals.
+// Makes `slices` vertices around the z axis. elevation_rad: elevation of their normals.
 Ring MakeRing(int slices, float radius, float z, float elevation_rad) {
   Ring ring;
   for (int i = 0; i < slices; ++i) {
@@ -42,7 +42,7 @@ void Triangle(const Vertex& a, const Vertex& b, const Vertex& c) {
   Emit(c);
 }
 
-// The surface between two rings.
+// Draws the surface between two rings.
 void Band(const Ring& lower, const Ring& upper) {
   for (size_t i = 0; i < lower.size(); ++i) {
     const size_t next = (i + 1) % lower.size();
@@ -51,14 +51,14 @@ void Band(const Ring& lower, const Ring& upper) {
   }
 }
 
-// The ring's plane, seen from above (up = 1) or from below (-1).
+// Draws the ring's plane, visible from above (up = 1) or from below (-1).
 void FlatCap(const Ring& ring, int up) {
   for (size_t i = 1; i + 1 < ring.size(); ++i) {
     up > 0 ? Triangle(ring[0], ring[i], ring[i + 1]) : Triangle(ring[0], ring[i + 1], ring[i]);
   }
 }
 
-// Half a unit sphere whose equator is at z.
+// Draws half a unit sphere whose equator is at z.
 void RoundCap(int slices, float z, int up) {
   const float sign = static_cast<float>(up), tilt = sign * static_cast<float>(M_PI) / 4;
   const Ring equator = MakeRing(slices, 1, z, 0);
@@ -84,7 +84,7 @@ uint32_t Compile(Draw draw) {
   return list;
 }
 
-// Makes the geom a mesh that is the given list, scaled along its axes.
+// Turns the geom into a mesh that draws the given list, scaled along the geom's axes.
 void TurnIntoMesh(const mjrContext& context, uint32_t list, float radius, float along,
                   mjvGeom* geom) {
   // The engine draws a mesh as display list baseMesh + dataid.

@@ -8,7 +8,7 @@
 namespace shoal::worlds {
 namespace {
 
-// The bodies of a model but the immovable world body 0.
+// Names of all bodies except the immovable world body 0.
 std::string BodyNames(const mjModel& model) {
   std::string names;
   for (int body = 1; body < model.nbody; ++body) {

@@ -24,7 +24,7 @@ namespace {
 
 constexpr int kErrorBytes = 1000;
 
-// Files in memory that the engine finds by name, whatever folder it looks in.
+// Files in memory. The engine finds them by name, in whatever folder it looks.
 class VirtualFolder {
  public:
   VirtualFolder() : vfs_(std::make_unique<mjVFS>()) { mj_defaultVFS(vfs_.get()); }
@@ -43,7 +43,7 @@ class VirtualFolder {
   const mjVFS* get() const { return vfs_.get(); }
 
  private:
-  std::unique_ptr<mjVFS> vfs_;  // megabytes: not on the stack
+  std::unique_ptr<mjVFS> vfs_;  // megabytes, so not on the stack
 };
 
 }  // namespace
@@ -55,8 +55,8 @@ namespace {
 
 ModelHandle Compile(const std::string& name, const std::string& user_file,
                     const std::string& addition) {
-  // The engine places the stars of a procedural sky with the C library's generator, which has no
-  // other user here. With this seed the sky is the same in every process.
+  // The engine draws the stars of a procedural sky from the C library's generator, which nothing
+  // else uses here. The fixed seed gives every process the same sky.
   std::srand(1);
   if (!user_file.empty() && !std::filesystem::is_regular_file(user_file)) {
     throw UsageError("model file '{}' does not exist", user_file);
@@ -68,8 +68,8 @@ ModelHandle Compile(const std::string& name, const std::string& user_file,
   }
   std::filesystem::path root = user_file.empty() ? name : user_file;
   if (!addition.empty()) {
-    // A root of our own in the same folder that includes the model's: the engine looks for includes
-    // and meshes beside the root.
+    // The engine looks for includes and meshes beside the root. So a root in the same folder
+    // includes the model's root and adds to it.
     constexpr const char* kRoot = "shoal_model_with_addition.xml";
     folder.Add(kRoot, fmt::format("<mujoco><include file=\"{}\"/>{}</mujoco>",
                                   root.filename().string(), addition));

@@ -17,7 +17,7 @@ namespace {
 constexpr char kName[] = "model.xml";
 constexpr int kErrorBytes = 1000;
 
-// One virtual file; megabytes, so on the heap.
+// One virtual file. mjVFS has megabytes, so it is on the heap.
 class VirtualFile {
  public:
   explicit VirtualFile(const std::string& text) : vfs_(std::make_unique<mjVFS>()) {

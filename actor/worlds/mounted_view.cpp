@@ -19,7 +19,7 @@ int BodyOf(const mjModel& model, const CameraView& camera) {
   return mj_name2id(&model, mjOBJ_BODY, camera.body.c_str());
 }
 
-// Position of a free camera and its directions ahead and up.
+// Position of a free camera, with its forward and up directions.
 struct Pose {
   Vector position, forward, up;
 };

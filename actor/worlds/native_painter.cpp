@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Quality native: our own renderer, without OpenGL.
+// Quality native: Shoal's own renderer, without OpenGL.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -52,7 +52,7 @@ class NativePainter final : public Painter {
     std::vector<int32_t> numbers(pixels());
     renderer_->DrawNumbers(scene_.scene(), width_, height_, numbers);
     for (size_t i = 0; i < pixels(); ++i) {
-      // Neighbouring numbers get colours that are far apart.
+      // Neighbouring numbers get very different colours.
       const uint32_t mixed = static_cast<uint32_t>(numbers[i] + 1) * 2654435761U;
       for (size_t c = 0; c < 3; ++c) {
         planes[c * pixels() + i] =

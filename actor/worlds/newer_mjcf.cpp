@@ -15,7 +15,7 @@ namespace {
 // Source: MuJoCo's changelog (doc/changelog.rst) up to 3.12.0.
 struct NewerWord {
   std::string_view word;     // an attribute, a keyword, or an element
-  std::string_view element;  // of an attribute where others have it, too; empty = any
+  std::string_view element;  // if other elements have the attribute, too; empty = any
   std::string_view since;
   std::string_view instead = "";
 };
@@ -80,7 +80,7 @@ constexpr NewerWord kWords[] = {
     {"type", "light", "3.3.3", "directional=\"true\""},
 };
 
-// The text between the quotes that follow `label`; empty when it is not there.
+// The text between the quotes that follow `label`, or empty if `label` is absent.
 std::string_view Quoted(std::string_view reason, std::string_view label) {
   const size_t at = reason.find(label);
   if (at == std::string_view::npos) return {};
@@ -94,7 +94,7 @@ std::string_view Quoted(std::string_view reason, std::string_view label) {
 }  // namespace
 
 std::string WithNewerMjcf(const std::string& reason) {
-  std::string line;  // blank lines of the engine's text leave one blank
+  std::string line;  // the reason with runs of blanks reduced to one
   for (const char c : OneLine(reason)) {
     if (c != ' ' || (!line.empty() && line.back() != ' ')) line += c;
   }

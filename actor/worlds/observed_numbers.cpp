@@ -9,7 +9,7 @@
 namespace shoal::worlds {
 namespace {
 
-// A quiet NaN with a payload of ours: copying keeps it, arithmetic does not make it.
+// A quiet NaN with Shoal's payload. Copying keeps the payload; arithmetic does not produce it.
 constexpr uint64_t kPattern = 0x7ffc'5348'4f41'4c21;
 const double kUnwritten = std::bit_cast<double>(kPattern);
 

@@ -18,7 +18,7 @@
 #include "common/config/config.h"
 
 #ifdef __SANITIZE_ADDRESS__
-// OSMesa keeps a few hundred bytes of every context it destroys.
+// OSMesa leaks a few hundred bytes of every destroyed context.
 extern "C" const char* __lsan_default_suppressions();
 extern "C" const char* __lsan_default_suppressions() { return "leak:libOSMesa.so\n"; }
 #endif
@@ -26,14 +26,14 @@ extern "C" const char* __lsan_default_suppressions() { return "leak:libOSMesa.so
 namespace shoal::worlds {
 namespace {
 
-// Tessellation of quality `fast`. Stacks, of spheres, decide what a goal just
-// above the table shows of itself: with three, a cap of 4 mm is a point that no
-// pixel sees. More of either takes longer and looks the same at 84x84.
+// Tessellation of quality `fast`. The stacks of a sphere decide how much of a goal just above the
+// table is visible: with three stacks, a cap of 4 mm is a point that no pixel sees. More slices or
+// stacks take longer and look the same at 84x84.
 constexpr int kFastSlices = 10;
 constexpr int kFastStacks = 4;
-constexpr int kFastLinkSlices = 8;  // of cylinders and capsules
+constexpr int kFastLinkSlices = 8;  // for cylinders and capsules
 constexpr int kFastQuads = 1;
-constexpr double kFastPlaneLines = 10;  // of a plane's grid, on each side of its centre
+constexpr double kFastPlaneLines = 10;  // grid lines of a plane on each side of its centre
 constexpr int kDepthBits = 24, kStencilBits = 8, kAccumulationBits = 8;
 
 bool AnyLightCastsShadow(const mjModel& model) {
@@ -46,9 +46,9 @@ bool AllLightsAreDirectional(const mjModel& model) {
                      [](mjtByte directional) { return directional != 0; });
 }
 
-// While it lives, planes have wide grids. A plane's third size is the spacing
-// at which the engine divides it for drawing: Hopper's floor becomes 26,000
-// quads of 0.25 m, for a light that is the same everywhere on it.
+// Gives planes wide grids during its lifetime. A plane's third size is the spacing at which the
+// engine divides it for drawing. Hopper's floor would become 26,000 quads of 0.25 m although its
+// light is uniform.
 class WidePlaneGrids {
  public:
   explicit WidePlaneGrids(mjModel* model)
@@ -68,10 +68,9 @@ class WidePlaneGrids {
   std::vector<mjtNum> sizes_;
 };
 
-// The engine adds a light that casts shadows in a pass of its own, after
-// texturing: a textured floor is brighter than full light times its texture.
-// Without that pass the parts are summed before texturing, where the sum would
-// be cut off at full light.
+// The engine adds a light that casts shadows in a separate pass, after texturing. A textured floor
+// is then brighter than full light times its texture. Without that pass, the parts are summed
+// before texturing and the sum would be clamped to full light.
 void LeaveLightUnclamped() {
   constexpr GLenum kClampVertexColor = 0x891A;
   const auto clamp_color =
@@ -80,7 +79,7 @@ void LeaveLightUnclamped() {
   clamp_color(kClampVertexColor, GL_FALSE);
 }
 
-// The pass without shadow casters is cut off at full light all the same.
+// The pass without shadow casters is clamped to full light in either case.
 void LimitHeadlight(mjvScene* scene) {
   for (int i = 0; i < scene->nlight; ++i) {
     mjvLight& light = scene->lights[i];
@@ -107,12 +106,11 @@ class OpenGlPainter final : public Painter {
   int width_, height_;
   bool grey_;
   bool fast_;
-  bool light_unclamped_ = false;  // stands in for passes of lights that would cast shadows
+  bool light_unclamped_ = false;  // replaces the passes of lights that cast shadows
   std::vector<uint8_t> pixels_;   // (H, W, 3), row 0 = bottom, as the engine reads them
   const OsmesaLibrary& gl_ = Osmesa();
   OSMesaContext osmesa_ = nullptr;
-  std::vector<uint8_t> window_;  // OSMesa's own buffer; drawing goes to the
-                                 // engine's off-screen one
+  std::vector<uint8_t> window_;  // OSMesa's own buffer; the engine draws to its off-screen buffer
   mjrContext context_;
   AbstractScene scene_;
   LowPolyShapes shapes_{kFastLinkSlices};
@@ -125,8 +123,8 @@ OpenGlPainter::OpenGlPainter(const ObservationConfig& observation)
       fast_(observation.quality == "fast"),
       pixels_(static_cast<size_t>(width_) * static_cast<size_t>(height_) * 3) {
   mjr_defaultContext(&context_);
-  // The rasteriser's own threads cost more than they bring at this size, and
-  // actors are already one per core.
+  // At this size the rasteriser's threads cost more than they gain, and actors already use one core
+  // each.
   setenv("LP_NUM_THREADS", "0", /*overwrite=*/1);
   osmesa_ = gl_.create_context(OSMESA_RGBA, kDepthBits, kStencilBits, kAccumulationBits,
                                /*sharelist=*/nullptr);
@@ -149,18 +147,18 @@ void OpenGlPainter::MakeCurrent() {
 void OpenGlPainter::MakeContext(World* world) {
   mjModel& model = world->model();
   auto& quality = model.vis.quality;
-  // A shadow map that nothing uses would take 64 MB.
+  // A shadow map takes 64 MB, also if it is unused.
   if (fast_ || !AnyLightCastsShadow(model)) quality.shadowsize = 0;
   if (fast_) {
     quality.offsamples = 0;
     quality.numslices = kFastSlices;
     quality.numstacks = kFastStacks;
-    // Light that falls off over a box needs the box's own division.
+    // If the light on a box varies, the box needs its own division.
     if (!AnyLightCastsShadow(model)) quality.numquads = kFastQuads;
   }
   model.vis.global.offwidth = width_;
   model.vis.global.offheight = height_;
-  // Light that falls off over a floor needs the floor's own division.
+  // If the light on a floor varies, the floor needs its own division.
   std::optional<WidePlaneGrids> wide;
   if (fast_ && AllLightsAreDirectional(model)) wide.emplace(&model);
   mjr_makeContext(&model, &context_, mjFONTSCALE_50);
@@ -175,8 +173,7 @@ void OpenGlPainter::LeaveOutEffects(const mjModel& model) {
   scene_.scene().flags[mjRND_REFLECTION] = 0;
   light_unclamped_ = AnyLightCastsShadow(model);
   if (light_unclamped_) LeaveLightUnclamped();
-  // The sky is most of a picture's fragments: the nearest texel is enough for
-  // it.
+  // Most fragments of a picture are sky, and the nearest texel is good enough for the sky.
   for (int i = 0; i < context_.ntexture; ++i) {
     if (context_.textureType[i] != mjTEXTURE_SKYBOX) continue;
     gl_.bind_texture(GL_TEXTURE_CUBE_MAP, context_.texture[i]);

@@ -19,7 +19,7 @@ void Find(void* library, const char* name, Function* function) {
 }  // namespace
 
 OsmesaLibrary OpenOsmesa(const char* file) {
-  // Global: the engine looks for OSMesaGetProcAddress among the process's symbols.
+  // RTLD_GLOBAL, because the engine looks for OSMesaGetProcAddress among the process's symbols.
   void* library = dlopen(file, RTLD_NOW | RTLD_GLOBAL);
   if (library == nullptr) {
     throw RuntimeError(

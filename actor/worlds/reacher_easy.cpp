@@ -13,7 +13,7 @@ namespace shoal::worlds {
 
 constexpr int kJoints = 2, kActuators = 2, kEngineSteps = 1;
 constexpr double kTargetRadius = 0.05;                          // m
-constexpr double kNearestTarget = 0.05, kFarthestTarget = 0.2;  // from the arm's root, m
+constexpr double kNearestTarget = 0.05, kFarthestTarget = 0.2;  // m, from the arm's root
 
 std::unique_ptr<World> MakeReacherEasy(const std::string& model_file) {
   return std::make_unique<ReacherEasy>(model_file);

@@ -24,7 +24,7 @@ Vector Cross(Vector a, Vector b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-// How far the geom reaches from its centre along a unit vector; no value = unknown.
+// Extent of the geom from its centre along a unit vector; no value = unknown.
 std::optional<float> Reach(const mjvGeom& geom, Vector along) {
   const auto axis = [&geom](int i) {
     return Vector{geom.mat[i], geom.mat[3 + i], geom.mat[6 + i]};
@@ -51,11 +51,11 @@ std::optional<float> Reach(const mjvGeom& geom, Vector along) {
   }
 }
 
-// The view's planes without the far one; normals point out of the view.
+// The planes that bound the view, without the far one. Normals point out of the view.
 class Frustum {
  public:
   Frustum(const mjvScene& scene, float aspect) {
-    // The engine draws the mean of the scene's two (stereo) cameras.
+    // The engine draws from the mean of the scene's two (stereo) cameras.
     const mjvGLCamera& left = scene.camera[0];
     const Vector position = Sum(0.5f, From(left.pos), 0.5f, From(scene.camera[1].pos));
     const Vector forward = From(left.forward), up = From(left.up), right = Cross(forward, up);
@@ -83,12 +83,12 @@ class Frustum {
  private:
   struct Plane {
     Vector normal;
-    float offset;  // of its points along the normal
+    float offset;  // of the plane's points along the normal
   };
   std::array<Plane, 5> planes_;
 };
 
-// Whether the geom lies within the box, wherever the camera is.
+// Whether the box contains the geom. A contained geom is hidden from every camera.
 bool Holds(const mjvGeom& box, const mjvGeom& geom) {
   const Vector offset = Sum(1, From(geom.pos), -1, From(box.pos));
   for (int i = 0; i < 3; ++i) {
@@ -113,7 +113,7 @@ void RemoveUnseenGeoms(mjvScene* scene, float aspect) {
   for (int i = 0; i < scene->ngeom; ++i) {
     const mjvGeom& geom = scene->geoms[i];
     if (geom.rgba[3] <= 0 || !frustum.MaySee(geom)) continue;
-    // Sites mark places within bodies, such as the block's centre.
+    // Sites also mark places inside bodies, such as the block's centre.
     if (geom.objtype == mjOBJ_SITE && IsInsideABox(*scene, geom)) continue;
     if (kept != i) scene->geoms[kept] = geom;
     ++kept;

@@ -10,7 +10,7 @@
 namespace shoal::worlds {
 namespace {
 
-// In order from the first joint on, as the recorded trajectories were summed; the engine's own
+// Sums from the first joint on, in the order used for the recorded trajectories. The engine's own
 // product differs in the last bit.
 double Dot(const double* a, const double* b, int size) {
   double sum = 0;

@@ -14,7 +14,7 @@
 namespace shoal::worlds {
 
 constexpr int kJoints = 9, kActuators = 6, kEngineSteps = 10;
-constexpr int kPitch = 2;             // of the torso, the one unlimited hinge
+constexpr int kPitch = 2;             // hinge of the torso, the only hinge without limits
 constexpr int kBodies = 7;            // torso, right thigh, leg, foot, left thigh, leg, foot
 constexpr double kStandHeight = 1.2;  // m
 constexpr double kWalkSpeed = 1;      // m/s

@@ -32,7 +32,7 @@ World::World(ModelHandle model, const std::string& model_file)
 
 void World::ReleaseTextures() {
   textures_released_ = true;
-  // A model is one allocation, so only whole pages within the textures can go.
+  // The whole model is one allocation, so only whole pages inside the textures can be released.
   const auto page = static_cast<size_t>(sysconf(_SC_PAGESIZE));
   const auto size = static_cast<size_t>(model_->ntexdata);
   const size_t before = (page - reinterpret_cast<uintptr_t>(model_->tex_rgb) % page) % page;
@@ -63,7 +63,7 @@ void World::PlaceSite(int site, std::span<const double> position) {
   }
   std::copy(position.begin(), position.end(), model_->site_pos + 3 * site);
   model_->site_sameframe[site] =
-      0;  // 1: same frame as the body, decided when the model was compiled
+      0;  // 1 would mean the body's frame, as decided when the model was compiled
 }
 
 void World::LookAtGoal(const std::function<void()>& look) {

@@ -23,7 +23,7 @@ namespace {
 
 constexpr char kGoalImage[] = "image";
 
-// Frames are comparable if the model, the quality and the views are equal.
+// Frames are comparable if their fingerprints are equal: model, quality and views are then equal.
 std::string RenderFingerprint(const std::string& model, const std::string& quality,
                               const std::vector<CameraView>& cameras, bool goal_hidden) {
   uint64_t hash =
@@ -39,7 +39,7 @@ std::string RenderFingerprint(const std::string& model, const std::string& quali
   return fmt::format("{:016x}", hash);
 }
 
-// Runs what a physics half does; what it throws as not finite is a fault of the episode.
+// Calls the physics half. A non-finite number that the call reports becomes a fault of the episode.
 template <class Act>
 auto FaultsOf(const tasks::Task& task, const Act& act) {
   try {
@@ -127,7 +127,8 @@ void WorldEnvironment::BuildSpec(const ObservationConfig& observation) {
     spec_.model_fingerprint =
         RenderFingerprint(world_->fingerprint(), observation.quality, cameras_, goal_hidden_);
   }
-  // Everything is recorded: it is little beside a frame, and without pixels it is what is seen.
+  // All numbers are recorded: they are small beside a frame, and a policy without pixels observes
+  // them.
   AddStateBlocks(observation);
   AddGoal(task_.achieved_goal(), mode == "both");
   AddGoal(task_.desired_goal(), mode == "desired" || mode == "both");
@@ -135,7 +136,7 @@ void WorldEnvironment::BuildSpec(const ObservationConfig& observation) {
 
 void WorldEnvironment::AddStateBlocks(const ObservationConfig& observation) {
   const StateBlocks& seen = observation.proprioception;
-  // Without pixels the policy sees the state, whatever else it is given.
+  // Without pixels the policy observes the whole state, unless the key names blocks.
   const bool all = seen.all || (!seen && render_ == nullptr);
   std::set<std::string> names(seen.names.begin(), seen.names.end());
   std::string known;
@@ -152,7 +153,7 @@ void WorldEnvironment::AddGoal(const tasks::Block& block, bool observed) {
   if (block.size() > 0) spec_.blocks.push_back({block.name, block.size(), observed});
 }
 
-// Fetches the state's numbers, rounded once to what records carry.
+// Reads the world's numbers and rounds them once, to the float32 of records.
 void WorldEnvironment::ReadWorld() {
   FaultsOf(task_, [&] { observed_.Read(*world_); });
   Round(task_.state_blocks(), observed_.state(), &state_);
@@ -228,7 +229,7 @@ void WorldEnvironment::CheckAction(std::span<const float> action) {
   }
 }
 
-// One control step: adds its reward, replaces the rest.
+// Runs one control step. Adds its reward to the result and replaces the other members.
 void WorldEnvironment::StepWorld(StepResult* result) {
   const World::Outcome outcome = FaultsOf(task_, [&] { return world_->Step(action_); });
   ++control_step_;

@@ -24,10 +24,10 @@ namespace {
 struct Registration {
   const char* name;
   std::unique_ptr<World> (*make)(const WorldOptions& options);
-  bool has_mujoco3 = false;  // physics besides mujoco2
+  bool has_mujoco3 = false;  // whether physics mujoco3 can be chosen
 };
 
-// For worlds without a choice of physics.
+// Adapts the maker of a world without a choice of physics.
 template <std::unique_ptr<World> (*make)(const std::string& model_file)>
 std::unique_ptr<World> OfModel(const WorldOptions& options) {
   return make(options.model);
@@ -50,7 +50,7 @@ constexpr Registration kWorlds[] = {
     {"walker_walk", OfModel<MakeWalkerWalk>},
 };
 
-// Added by AddWorld.
+// A world registered by AddWorld.
 struct AddedWorld {
   WorldMaker make;
   std::string task_folder;

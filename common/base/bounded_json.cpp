@@ -11,7 +11,7 @@ bool JsonTooDeep(std::string_view text) {
   for (size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     if (in_string) {
-      if (c == '\\') ++i;  // whatever follows does not end the string
+      if (c == '\\') ++i;  // an escaped character does not end the string
       if (c == '"') in_string = false;
       continue;
     }

@@ -19,7 +19,7 @@ bool IsOption(const std::string& word) {
   return word.size() > 1 && word[0] == '-' && !number;
 }
 
-// The command and, if it lets options fall through, the commands above it.
+// The command and, if unknown options fall through to them, the commands above it.
 std::vector<const CLI::App*> Levels(const CLI::App* command) {
   std::vector<const CLI::App*> levels{command};
   while (levels.back()->get_fallthrough() && levels.back()->get_parent() != nullptr) {
@@ -41,14 +41,14 @@ std::string NameOf(const CLI::App* command) {
   return (above == nullptr ? "" : NameOf(above) + " ") + command->get_name();
 }
 
-// A word of the command line and the command it was said to.
+// An unknown option, and the command it was given to.
 struct Said {
   const CLI::App* command;
-  std::string option;  // unknown; empty: none is
+  std::string option;  // empty: every option is known
 };
 
-// The first option that is not known to the command it is said to; without one, the command that
-// the words lead to.
+// The first option that its command does not know. If there is none, the command that the words
+// select.
 Said FindUnknownOption(const CLI::App* app, const std::vector<std::string>& words) {
   const CLI::App* command = app;
   for (size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
@@ -64,7 +64,7 @@ Said FindUnknownOption(const CLI::App* app, const std::vector<std::string>& word
     const CLI::Option* option = FindOption(command, name);
     if (option == nullptr) return {command, name};
     if (name.size() < words[i].size()) continue;
-    // Its values are no options and no commands.
+    // The option's values are neither options nor commands.
     for (int values = option->get_items_expected_max();
          values > 0 && i + 1 < words.size() && !IsOption(words[i + 1]); --values) {
       ++i;
@@ -73,7 +73,8 @@ Said FindUnknownOption(const CLI::App* app, const std::vector<std::string>& word
   return {command, ""};
 }
 
-// "; nearest is '--seed'": by the letters, since all begin with dashes.
+// Text such as "; nearest is '--seed'". Compares without dashes, because all options begin with
+// them.
 std::string NearestOption(const CLI::App* command, const std::string& option) {
   std::vector<std::string> names;
   for (const CLI::App* level : Levels(command)) {
@@ -91,7 +92,7 @@ std::string NearestOption(const CLI::App* command, const std::string& option) {
                          const std::vector<std::string>& words, const WordHint& hint) {
   const auto [command, option] = FindUnknownOption(app, words);
   const std::string name = NameOf(command);
-  // GuardMain names the program.
+  // GuardMain already prints the program's name.
   const std::string where = command == app ? "" : name.substr(app->get_name().size() + 1) + ": ";
   if (!option.empty()) {
     std::string near = hint ? hint(*command, option) : "";
@@ -123,7 +124,8 @@ void AddVersion(CLI::App* app) {
 std::optional<int> ParseCommandLine(CLI::App* app, const std::vector<std::string>& words,
                                     const WordHint& hint) {
   try {
-    app->parse(std::vector<std::string>(words.rbegin(), words.rend()));  // it takes the last first
+    // CLI11 takes the last word first.
+    app->parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::Success& e) {
     return app->exit(e);
   } catch (const CLI::ParseError& e) {

@@ -41,7 +41,7 @@ const char* VerbOf(int flags) {
                      path.string());
 }
 
-// Opens without waiting for the other end of a FIFO, and fills `status`.
+// Opens the path without waiting for the other end of a FIFO. Fills `status`.
 Descriptor OpenNow(const std::filesystem::path& path, int flags, mode_t mode, struct stat* status) {
   Descriptor file(open(path.c_str(), flags | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, mode));
   if (file.get() < 0 && errno == ENXIO) RefuseKind(flags, path);  // a FIFO without a reader
@@ -69,7 +69,7 @@ std::string ReadAll(int fd, const std::filesystem::path& path, size_t expected) 
   }
 }
 
-// Writes everything or returns the errno.
+// Writes everything. Returns 0 or the errno.
 int WriteAll(int fd, std::string_view content) {
   while (!content.empty()) {
     const ssize_t n = write(fd, content.data(), content.size());
@@ -80,7 +80,7 @@ int WriteAll(int fd, std::string_view content) {
   return 0;
 }
 
-// Does what WriteAll does, in two halves on a simulated disk.
+// Does what WriteAll does, but in two halves on a simulated disk.
 int WriteInSteps(int fd, const std::string& path, std::string_view content) {
   const size_t half = DiskSteps::Current() == nullptr ? content.size() : content.size() / 2;
   for (const std::string_view part : {content.substr(0, half), content.substr(half)}) {
@@ -104,7 +104,7 @@ void Replace(const std::filesystem::path& temporary, const std::filesystem::path
   if (fd < 0) Fail("cannot write", path, errno);
   int error = WriteInSteps(fd, path, content);
   if (error == 0 && sync == Sync::kYes && fsync(fd) != 0) error = errno;
-  if (close(fd) != 0 && error == 0) error = errno;  // by hand: here its result counts
+  if (close(fd) != 0 && error == 0) error = errno;  // explicit, because the result counts
   if (error == 0) error = DiskStep(path);
   if (error == 0 && rename(temporary.c_str(), path.c_str()) != 0) error = errno;
   if (error != 0) {
@@ -124,7 +124,7 @@ Descriptor OpenRegular(const std::filesystem::path& path, int flags, mode_t mode
   struct stat status {};
   Descriptor file = OpenNow(path, flags, mode, &status);
   if (!S_ISREG(status.st_mode)) RefuseKind(flags, path);
-  fcntl(file.get(), F_SETFL, flags & O_APPEND);  // a child process may inherit it
+  fcntl(file.get(), F_SETFL, flags & O_APPEND);  // clears O_NONBLOCK: children may inherit it
   return file;
 }
 
@@ -133,7 +133,7 @@ std::string ReadFile(const std::filesystem::path& path) {
   const Descriptor file = OpenNow(path, O_RDONLY, 0, &status);
   if (!S_ISREG(status.st_mode)) {
     if (!MayBePipe(path)) RefuseKind(O_RDONLY, path);
-    fcntl(file.get(), F_SETFL, O_RDONLY);  // waits for what the other end writes
+    fcntl(file.get(), F_SETFL, O_RDONLY);  // reading waits for the other end
   }
   return ReadAll(file.get(), path, static_cast<size_t>(std::max<off_t>(0, status.st_size)));
 }
@@ -164,6 +164,7 @@ void OpenToOthers(const std::filesystem::path& path) {
 }
 
 void NoteUmask() {
+  // The mask can be read only by setting another one.
   const mode_t found = umask(kPrivate);
   umask(found);
   if (!FoundMask()) FoundMask() = found;

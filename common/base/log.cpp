@@ -46,7 +46,7 @@ class File {
 
  private:
   spdlog::logger logger_;
-  spdlog::logger raw_;  // with a sink of its own: a pattern is the sink's
+  spdlog::logger raw_;  // has its own sink, because a pattern belongs to a sink
 };
 
 namespace {

@@ -15,17 +15,17 @@
 namespace shoal {
 namespace {
 
-// A reason may quote what came from outside: one line of a length that people read.
+// A reason may quote foreign text, so it is reduced to one line of readable length.
 constexpr size_t kReasonBytes = 1000;
 
 std::string ReasonLine(const std::string& program, const char* what, const char* reason) {
   return fmt::format("{}: {}: {}", program, what, Shortened(OneLine(reason), kReasonBytes));
 }
 
-// Returns only in process 1 of a container, which the kernel spares: with the exit code that a
-// shell reports for a death by the signal.
+// Returns only in process 1 of a container, which the kernel does not end. The exit code is then
+// the one that a shell reports for a death by the signal.
 int DieBy(int signal) {
-  std::fflush(nullptr);  // a signal's death writes no buffers
+  std::fflush(nullptr);  // a death by a signal writes no buffers
   std::signal(signal, SIG_DFL);
   sigset_t unblocked;
   sigemptyset(&unblocked);

@@ -22,7 +22,7 @@ bool BindsThreads(const char* variable) {
   return false;
 }
 
-// `environment` is the array that `environ` points to later: it is shortened in place.
+// `environment` is the array that `environ` will point to. It is shortened in place.
 void RemoveBindings(int, char**, char** environment) {
   int ignored = 0;
   char** kept = environment;

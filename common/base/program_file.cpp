@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kLoader = "ld-linux";  // of every architecture; a version follows
+constexpr std::string_view kLoader = "ld-linux";  // on any architecture; a version follows
 constexpr std::string_view kName = "--argv0";
 
 fs::path Executable() {
@@ -48,7 +48,7 @@ std::vector<std::string> ProgramWordsOf(const fs::path& executable,
     words.push_back(command_line.substr(at, end - at));
   }
   if (!IsLoader(executable)) return words;
-  // The loader's options end with the name; the program's file follows, and is no word of its own.
+  // The loader's options end with the name. The program's file follows and is not one of its words.
   const auto option = std::ranges::find(words, kName);
   if (words.end() - option < 3) return words;
   std::vector<std::string> own{option[1]};

@@ -12,7 +12,7 @@
 namespace shoal {
 
 void FillWithRandomBytes(std::span<std::byte> bytes) {
-  CHECK(bytes.size() <= 256) << bytes.size();  // what getrandom gives in one go
+  CHECK(bytes.size() <= 256) << bytes.size();  // the most that getrandom returns in one call
   if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) {
     throw RuntimeError("the kernel gives no random bytes: {}", std::strerror(errno));
   }

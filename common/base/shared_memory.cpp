@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL;
 
-// The kernel ends a process that makes a file larger than this, those in memory included.
+// The kernel ends a process that makes a file larger than this limit, even a file in memory.
 void CheckFileSizeLimit(uint64_t bytes) {
   struct rlimit limit {};
   if (getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
@@ -49,7 +49,7 @@ SharedMemory SharedMemory::Make(const std::string& label, uint64_t bytes) {
   CheckFileSizeLimit(bytes);
   Descriptor descriptor(memfd_create(label.c_str(), MFD_CLOEXEC | MFD_ALLOW_SEALING));
   const int fd = descriptor.get();
-  // fallocate takes the pages now: a page that is missing later would be a SIGBUS.
+  // fallocate reserves the pages now, because a page that is missing later causes a SIGBUS.
   int error = 0;
   if (fd < 0 || fchmod(fd, S_IRUSR | S_IWUSR) != 0 ||
       ftruncate(fd, static_cast<off_t>(bytes)) != 0 || fcntl(fd, F_ADD_SEALS, kSeals) != 0) {
@@ -71,7 +71,7 @@ Descriptor SharedMemory::MakeOf(const std::string& label,
   CheckFileSizeLimit(bytes);
   Descriptor descriptor(memfd_create(label.c_str(), MFD_CLOEXEC | MFD_ALLOW_SEALING));
   const int fd = descriptor.get();
-  // A page is there once it is written: none can be missing later, which would be a SIGBUS.
+  // Writing allocates every page, so no page can be missing later and cause a SIGBUS.
   bool made = fd >= 0 && fchmod(fd, S_IRUSR | S_IWUSR) == 0;
   for (const std::string_view piece : pieces) made = made && WriteWhole(fd, piece);
   if (!made || fcntl(fd, F_ADD_SEALS, kSeals | F_SEAL_WRITE) != 0) {
@@ -82,7 +82,7 @@ Descriptor SharedMemory::MakeOf(const std::string& label,
 
 SharedMemory SharedMemory::Open(int32_t pid, int32_t descriptor, uint64_t bytes) {
   const std::string path = fmt::format("/proc/{}/fd/{}", pid, descriptor);
-  // Whatever else may lie there: opening it neither waits nor takes a terminal.
+  // The path may name any kind of file, so opening it must neither wait nor take over a terminal.
   Descriptor opened(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
   if (opened.get() < 0) {
     throw RuntimeError("cannot open shared memory '{}': {}", path, std::strerror(errno));

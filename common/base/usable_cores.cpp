@@ -30,7 +30,7 @@ int AffinityCores() {
   return static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));
 }
 
-// One number; negative when the file is missing or says "max".
+// Reads one number. Negative if the file is missing or says "max".
 double ReadNumber(std::istream& in) {
   double number = -1;
   return in >> number ? number : -1;

@@ -27,14 +27,14 @@ namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
 constexpr char kPrefix[] = "step_";
-// Damage cannot be mended.
+// The hint of every error, because damage cannot be repaired.
 constexpr char kInstead[] = "take another checkpoint";
 
 uint32_t Crc(std::string_view bytes) {
   return Crc32({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
 }
 
-// Hashes are hexadecimal strings: many JSON readers take numbers as doubles.
+// Hashes are hexadecimal strings, because many JSON readers read numbers as doubles.
 std::string Hex64(uint64_t word) { return fmt::format("{:016x}", word); }
 
 uint64_t ParseHex64(const ordered_json& value) {
@@ -72,12 +72,12 @@ CheckpointState StateFromJson(const ordered_json& json) {
   state.config_hash = ParseHex64(json.at("config_hash"));
   state.spec_hash = ParseHex64(json.at("spec_hash"));
   json.at("precision").get_to(state.precision);
-  // Those written before there was a choice do not say it.
+  // Checkpoints from before there was a choice lack this member.
   if (json.contains("algorithm")) json.at("algorithm").get_to(state.algorithm);
   return state;
 }
 
-// The object of state.json with schema and own checksum verified.
+// Reads the object of state.json and verifies its schema and its own checksum.
 ordered_json ReadStateObject(const fs::path& path) {
   const std::string file = path.string();
   ordered_json json = ParseBoundedJson<ordered_json>(ReadFile(path));
@@ -108,7 +108,7 @@ ordered_json ReadStateObject(const fs::path& path) {
   return json;
 }
 
-// The bytes of FOLDER/NAME, of the size and checksum that state.json gives.
+// Reads FOLDER/NAME and verifies the size and checksum that state.json gives.
 std::string ReadVerified(const fs::path& folder, const char* name, const ordered_json& entry) {
   const std::string file = (folder / name).string();
   std::string bytes = ReadFile(file);
@@ -144,7 +144,7 @@ CheckpointFiles ReadFiles(const fs::path& folder, bool policy_alone) {
   return checkpoint;
 }
 
-// Moves `from` to `to`; what was there before is then at `from`.
+// Moves `from` to `to`. If `to` exists, the two are exchanged.
 void MoveOver(const fs::path& from, const fs::path& to) {
   errno = DiskStep(to);
   if (errno == 0 && rename(from.c_str(), to.c_str()) == 0) return;
@@ -166,6 +166,7 @@ std::optional<uint64_t> CheckpointUpdates(const std::string& name) {
   const char* end = name.data() + name.size();
   uint64_t updates = 0;
   const auto [parsed, error] = std::from_chars(begin, end, updates);
+  // Other spellings of the number are no names of checkpoints.
   if (error != std::errc() || parsed != end || CheckpointName(updates) != name) {
     return std::nullopt;
   }
@@ -200,7 +201,7 @@ void WriteCheckpointFiles(const fs::path& parent, const CheckpointFiles& files,
     fs::remove_all(fresh, ignored);
     throw;
   }
-  fs::remove_all(fresh, ignored);  // a former checkpoint of the name, if there was one
+  fs::remove_all(fresh, ignored);  // an earlier checkpoint of the same name, if there was one
 }
 
 CheckpointFiles ReadCheckpointFiles(const fs::path& folder) {

@@ -24,12 +24,13 @@ namespace {
 using internal::Key;
 using nlohmann::json;
 
-// Text as JSON, with a replacement character for what is not UTF-8.
+// The text as JSON. Bytes that are not UTF-8 become replacement characters.
 std::string Quoted(const std::string& text) {
   return json(text).dump(-1, ' ', /*ensure_ascii=*/false, json::error_handler_t::replace);
 }
 
-// A configuration ends in JSON, which holds nothing else; its files have been checked when parsed.
+// A configuration is written as JSON, which is UTF-8. Text from files was checked when it was
+// parsed.
 bool IsUtf8(const std::string& text) {
   try {
     json(text).dump();
@@ -39,7 +40,7 @@ bool IsUtf8(const std::string& text) {
   }
 }
 
-// The part of a value that a refusal quotes.
+// The part of a value that an error quotes.
 std::string Shown(const json& value) { return Shortened(value.dump(), 200); }
 
 [[noreturn]] void Refuse(const Key& key, const json& value, const std::string& source) {
@@ -68,7 +69,7 @@ bool IsSection(std::string_view path) {
                              [&](const Key& key) { return key.path.starts_with(prefix); });
 }
 
-// A hint at the key that was meant: by another program's name, else by the spelling.
+// A hint at the key that was probably meant: by another program's name, else by the spelling.
 std::string HintFor(const std::string& path) {
   const MeantKey meant = FindMeantKey(path);
   if (meant.same) return fmt::format("it is called '{}' here", meant.key);
@@ -112,7 +113,7 @@ class KeyApplication {
     }
   }
 
-  // Refuses a key that the text has given before, under this name or another.
+  // Refuses a key that occurs twice in the text, under one name or two.
   void Take(const Key& key, const std::string& path) {
     if (!seen_.insert(key.path).second) {
       const std::string also = path == key.path ? "" : fmt::format(" (as '{}')", path);
@@ -133,8 +134,8 @@ void ApplyObject(const json& object, const std::string& source, bool notes, Conf
   KeyApplication(source, notes, config).ApplySection(object, "");
 }
 
-// The value of an assignment: JSON where it is JSON, else the text itself, so that
-// observation.quality=fast needs no quotes.
+// The value of an assignment: JSON if the text is JSON, else the text itself.
+// observation.quality=fast thus needs no quotes.
 json AssignedValue(const Key& key, const std::string& text) {
   Config scratch;
   if (std::holds_alternative<std::string*>(key.slot(scratch)) && !text.starts_with('"'))
@@ -143,14 +144,15 @@ json AssignedValue(const Key& key, const std::string& text) {
   return value.is_discarded() ? json(text) : value;
 }
 
-// Keys that say how long a run goes on or where it lies, not what it computes.
+// Whether the key influences what a run computes. Other keys say how long it goes on or where it is
+// stored.
 bool PartOfIdentity(std::string_view path) {
   return path != "preset" && path != "run_name" && path != "run_dir" && path != "env_steps" &&
          !path.starts_with("stop.");
 }
 
 nlohmann::ordered_json KeysToJson(const Config& config, bool (*wanted)(std::string_view)) {
-  Config copy = config;  // slots are mutable pointers
+  Config copy = config;  // slots are pointers to mutable members
   nlohmann::ordered_json object = nlohmann::ordered_json::object();
   for (const Key& key : internal::Keys()) {
     if (!wanted(key.path)) continue;
@@ -175,11 +177,12 @@ void ApplyStoredJson(const json& object, const std::string& source, Config* conf
 
 void ApplyFile(const std::string& path, Config* config) {
   json object = ParseStrictJson(ReadFile(path), path);
-  // Tells an editor what keys there are (config_schema.h).
+  // `$schema` tells an editor which keys exist (config_schema.h).
   if (object.is_object() && object.contains("$schema") && object["$schema"].is_string()) {
     object.erase("$schema");
   }
-  // A run's config.json may be used as a configuration; what describes the run is not a key.
+  // A run's config.json may be used as a configuration. The members that describe the run are not
+  // keys.
   const bool of_a_run =
       object.is_object() && object.contains("schema") && object["schema"] == kConfigSchema;
   if (of_a_run) {

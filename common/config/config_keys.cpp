@@ -11,7 +11,7 @@ namespace {
 constexpr int64_t kMaxInt64 = std::numeric_limits<int64_t>::max();
 constexpr IntegerRange kSteps{1, 1'000'000'000'000};
 
-// A key is spelled like its member, which the table stores as a function from a Config.
+// A key is spelled like its member. The table stores the member as a function from a Config.
 #define SHOAL_KEY(member, range, text)                                                         \
   {                                                                                            \
     .path = #member, .slot = [](Config& c) -> Slot { return &c.member; }, .rule = Rule{range}, \

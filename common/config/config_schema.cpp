@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// At most internal::kLongestFileName characters.
+// Matches at most internal::kLongestFileName characters.
 constexpr char kFileName[] = "^[A-Za-z0-9_][A-Za-z0-9._-]{0,199}$";
 constexpr char kFileNameOrEmpty[] = "^([A-Za-z0-9_][A-Za-z0-9._-]{0,199})?$";
 static_assert(internal::kLongestFileName == 200);
@@ -93,7 +93,7 @@ struct ValueSchema {
   }
   ordered_json operator()(const KeywordArguments*) const { return {{"type", "object"}}; }
   ordered_json operator()(const Schedule*) const {
-    // Blanks only behind commas, as ParseSchedule has it.
+    // Blanks are allowed only behind commas, as in ParseSchedule.
     const std::string number = R"(-?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?)";
     const ordered_json text{
         {"type", "string"},
@@ -115,7 +115,7 @@ ordered_json ObjectOfKeys() {
       {"type", "object"}, {"properties", ordered_json::object()}, {"additionalProperties", false}};
 }
 
-// Adds the members of a file that are no keys: its schema and, in a run's config.json, the
+// Adds the members of a file that are not keys: its schema and, in a run's config.json, the
 // description of the run.
 void AddWhatIsNoKey(ordered_json* schema) {
   ordered_json& properties = (*schema)["properties"];

@@ -16,7 +16,7 @@ struct FormerName {
   std::string_view former, present;
 };
 
-// Version 0.1 had the names on the left. Version 0.3 may drop them.
+// Names of version 0.1 on the left, present names on the right. Version 0.3 may drop the left ones.
 constexpr FormerName kFormerNames[] = {
     {"learner.temperature", "sac.temperature"},
     {"learner.initial_temperature", "sac.initial_temperature"},

@@ -46,7 +46,7 @@ bool Allows(const Rule& rule, const std::string& value) {
   return true;
 }
 
-// 1e5 is an integer, too. Beyond 2^53 a real number stands for several integers.
+// Takes 1e5 as an integer, too. Beyond 2^53 a real number represents several integers.
 json AsInteger(const json& value) {
   if (!value.is_number_float()) return value;
   const double number = value.get<double>();
@@ -66,6 +66,7 @@ template <std::integral T>
 bool Read(const json& value, const Rule& rule, T* out) {
   const json integer = AsInteger(value);
   if (!integer.is_number_integer()) return false;
+  // Without this check, get<int64_t>() would wrap around.
   const bool too_large =
       integer.is_number_unsigned() &&
       integer.get<uint64_t>() > static_cast<uint64_t>(std::numeric_limits<int64_t>::max());

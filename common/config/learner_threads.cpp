@@ -9,16 +9,17 @@
 namespace shoal {
 namespace {
 
-// Below, what does not shrink with the rows (targets that follow, weights in the layouts of the
-// CPU) takes most of a replica's time, and each holds parameters of its own.
+// If a replica has fewer rows, work that does not shrink with the rows (moving targets, laying out
+// weights) takes most of a replica's time. Each replica also holds parameters of its own.
 constexpr int kLeastRows = 16;
-// Rows below which it takes nearly all; with so many, 16 threads do 1.2 to 1.6 times what 8 do.
+// If a replica has fewer rows, such work takes nearly all of the time. At this number, 16 threads
+// do 1.2 to 1.6 times what 8 do.
 constexpr int kFewestRows = 8;
 
-// Transitions of a batch, each with its copies.
+// Number of transitions in a batch, each with its copies.
 int Groups(const Config& config) { return config.learner.batch / config.replay.copies; }
 
-// An update follows every `env_steps` env steps, in the mean over the run.
+// Whether an update follows every `env_steps` env steps, on average over the run.
 bool UpdatesEach(const Config& config, int env_steps) {
   const auto budget = static_cast<uint64_t>(config.env_steps);
   return config.replay.samples_per_insert.Mean(0, budget) * env_steps >= config.learner.batch;
@@ -26,8 +27,9 @@ bool UpdatesEach(const Config& config, int env_steps) {
 
 int Half(int cores) { return std::max(1, cores / 2); }
 
-// An update of pixels takes the time of some tens of env steps, so that actors wait for it: with an
-// update for each step nearly always; one for each eighth takes three times what the steps take.
+// An update from pixels takes as long as some tens of env steps, so actors wait for it. With an
+// update for each step they wait nearly always. One for every eighth step takes three times as long
+// as these steps.
 int MostCores(const Config& config, int cores) {
   if (UpdatesEach(config, 1)) return cores;
   if (UpdatesEach(config, 8)) return (3 * cores + 3) / 4;

@@ -9,7 +9,7 @@
 namespace shoal {
 namespace {
 
-// The value of a key that counts from one.
+// The value of a key that is at least 1.
 uint64_t CountOf(const ControlState& control, std::string_view key, int64_t configured) {
   const std::optional<double> changed = control.Setting(key);
   if (!changed || *changed < 1) return static_cast<uint64_t>(configured);

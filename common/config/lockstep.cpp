@@ -8,7 +8,7 @@
 namespace shoal {
 namespace {
 
-// Keeps a product such as 3 * (1 / 3.0) from being floored to one update less.
+// Keeps a product such as 3 * (1 / 3.0) from being rounded down to one update less.
 constexpr double kRoundingSlack = 1e-6;
 
 uint64_t EnvStepsAtPhaseEnd(const Config& config, int64_t phase) {
@@ -16,7 +16,7 @@ uint64_t EnvStepsAtPhaseEnd(const Config& config, int64_t phase) {
                                config.envs_per_actor);
 }
 
-// In the mean of the phases 1 to `phase`.
+// Mean over the phases 1 to `phase`.
 double UpdatesPerPhase(const Config& config, int64_t phase) {
   const Schedule& samples = config.replay.samples_per_insert;
   if (samples.Most() <= 0) return 1;
@@ -51,7 +51,7 @@ uint64_t LockstepUpdatesAtPhaseEnd(const Config& config, int64_t phase) {
 
 uint64_t LockstepStepsBeforeUpdate(const Config& config, uint64_t update) {
   CHECK(update >= 1);
-  // The first phase that ends with at least `update` updates is `high` or between: `low` has fewer.
+  // The first phase that ends with at least `update` updates is above `low` and at most `high`.
   int64_t low = 0, high = 1;
   while (LockstepUpdatesAtPhaseEnd(config, high) < update) {
     low = high;

@@ -12,12 +12,12 @@ namespace shoal {
 namespace {
 
 struct Names {
-  std::string_view key;  // empty: there is none
+  std::string_view key;  // empty: Shoal has no such key
   std::vector<std::string_view> words;
-  std::string_view note = {};  // a key with a note is not taken as an option: it differs
+  std::string_view note = {};  // not empty: the key differs, so it is only suggested
 };
 
-// The words of other programs, with '_'.
+// Words of other programs, with '_'.
 const std::vector<Names>& Table() {
   static const std::vector<Names> table{
       {"env_steps",
@@ -104,7 +104,7 @@ std::string_view LastWord(std::string_view path) {
   return dot == std::string_view::npos ? path : path.substr(dot + 1);
 }
 
-// The path that is `word`, or the only one that ends with it; empty where there is none.
+// The path that is `word`, or the only path that ends with `word`. Empty if there is none.
 std::string_view OwnKey(const std::string& word) {
   std::string_view found;
   int matches = 0;
@@ -121,13 +121,13 @@ std::string_view OwnKey(const std::string& word) {
 
 MeantKey FindMeantKey(std::string_view word) {
   const std::string text = Normalised(word);
-  // Applying the key notes its former name.
+  // The note about a former name is printed when the key is applied.
   if (PresentName(text) != text) return {.key = text, .note = "", .same = true};
   if (const std::string_view own = OwnKey(text); !own.empty()) {
     return {.key = std::string(own), .note = "", .same = true};
   }
   for (const Names& names : Table()) {
-    // The last word decides: users guess the section.
+    // Only the last word is compared, because users guess the section.
     if (std::ranges::count(names.words, LastWord(text)) == 0) continue;
     return {.key = std::string(names.key),
             .note = std::string(names.note),

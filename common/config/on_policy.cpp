@@ -16,8 +16,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// Keys, or sections with a dot at their end, that say how transitions are kept and learned from
-// again and again.
+// Keys that say how transitions are stored and reused. A name that ends with a dot is a section.
 constexpr std::string_view kOffPolicyKeys[] = {"replay.",
                                                "exploration.",
                                                "lockstep_steps",
@@ -41,7 +40,8 @@ const ordered_json& ValueAt(const ordered_json& keys, std::string path) {
   return keys.at(ordered_json::json_pointer(fmt::format("/{}", path)));
 }
 
-// The first of `path` or, of a section, its keys that is not at its default; empty when all are.
+// The first changed key: `path` itself or, if `path` is a section, one of its keys. Empty if all
+// are at their defaults.
 std::string FirstChanged(std::string_view path, const ordered_json& asked,
                          const ordered_json& usual) {
   if (path.ends_with('.')) {
@@ -92,7 +92,7 @@ void ValidateRollout(const Config& config) {
         "bootstrapped by; expected at least 2",
         steps);
   }
-  if (config.actors == 0) return;  // not known yet
+  if (config.actors == 0) return;  // the number of actors is not known yet
   const int64_t envs = int64_t{config.actors} * config.envs_per_actor;
   const int64_t batch = config.learner.batch, rows = steps * envs;
   constexpr int64_t kMostRows = std::numeric_limits<int>::max();

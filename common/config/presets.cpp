@@ -15,7 +15,7 @@ namespace {
 
 constexpr char kKind[] = "presets";
 
-// Says of each folder why nothing was found there.
+// Says for each folder why no preset was found there.
 [[noreturn]] void FailWithoutPresets() {
   std::string reasons;
   for (const std::filesystem::path& folder : SharedDataFolders(kKind)) {

@@ -38,7 +38,8 @@ std::vector<std::string> CriticBlocks(const StateBlocks& asked, const Observatio
     const bool named = asked.all || std::ranges::count(asked.names, block.name) > 0;
     if (named && !block.observed) critic.push_back(block.name);
   }
-  // Without pixels and without a block more than the policy has, it would judge blindly.
+  // Without pixels, a critic that observes no more blocks than the policy would lack what pixels
+  // show.
   if (asked && critic.empty()) {
     throw UsageError(
         "sac.critic_blocks: the policy of {} observes all of {}, which leaves the critic "
@@ -50,7 +51,7 @@ std::vector<std::string> CriticBlocks(const StateBlocks& asked, const Observatio
   return critic;
 }
 
-// A block's own name may have a dash in it; only what is no block is read as a difference.
+// A block's name may contain a dash, so only a text that is no block is read as a difference.
 AuxLabel LabelOf(const std::string& text, const ObservationSpec& spec) {
   constexpr const char* kKey = "sac.aux";
   const size_t dash = text.find('-');

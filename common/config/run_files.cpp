@@ -23,7 +23,7 @@ json ReadObject(const std::filesystem::path& path, const char* schema) {
   return object;
 }
 
-// The member, or Error naming it.
+// Returns the member, or throws Error that names it.
 template <class T>
 T Member(const json& object, const char* name, const std::filesystem::path& path) {
   try {

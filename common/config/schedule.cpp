@@ -14,7 +14,7 @@ namespace {
 constexpr std::string_view kLinear = "linear(";
 constexpr int64_t kMostEnvSteps = 1'000'000'000'000;
 
-// Takes a number off the front of the text; false when there is none.
+// Removes a number from the front of the text. False if there is none.
 template <class Number>
 bool TakeNumber(std::string_view* text, Number* number) {
   const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), *number);
@@ -23,7 +23,7 @@ bool TakeNumber(std::string_view* text, Number* number) {
   return true;
 }
 
-// Takes a comma and the blanks behind it off the front.
+// Removes a comma and the blanks behind it from the front.
 bool TakeComma(std::string_view* text) {
   if (!text->starts_with(',')) return false;
   text->remove_prefix(1);
@@ -59,7 +59,7 @@ std::optional<Schedule> ParseSchedule(std::string_view text) {
       !TakeNumber(&text, &schedule.env_steps) || text != ")") {
     return std::nullopt;
   }
-  // from_chars reads "nan" and "inf", which JSON does not have.
+  // from_chars accepts "nan" and "inf", which JSON does not have.
   if (!std::isfinite(schedule.start) || !std::isfinite(schedule.end)) return std::nullopt;
   if (schedule.env_steps < 1 || schedule.env_steps > kMostEnvSteps) return std::nullopt;
   return schedule;

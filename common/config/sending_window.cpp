@@ -9,7 +9,7 @@
 namespace shoal {
 namespace {
 
-// At once, of all environments of an actor.
+// Most records that all environments of an actor make at once.
 int64_t MostRecords(const Config& config) {
   return int64_t{MostRecordsOfStep(config.observation.goal_mode == "image")} *
          config.envs_per_actor;

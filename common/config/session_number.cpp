@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// 0 when there was none.
+// 0 if there was none.
 uint64_t LastSession(const fs::path& file) {
   std::error_code error;
   if (!fs::exists(file, error)) return 0;
@@ -36,8 +36,8 @@ uint64_t LastSession(const fs::path& file) {
   return last;
 }
 
-// Replaces a text of equal length within the file's own block, which takes no space: a full disk
-// does not prevent it. Returns false if it cannot.
+// Replaces a text of equal length within the file's own block. This takes no space, so a full disk
+// does not prevent it. Returns false on failure.
 bool Overwrite(const fs::path& file, const std::string& text) {
   std::error_code none;
   if (fs::file_size(file, none) != text.size() || none) return false;
@@ -66,7 +66,8 @@ uint64_t NextSession(const fs::path& run, const std::string& process, int64_t wa
   try {
     Store(file, std::to_string(session) + "\n");
   } catch (const Error& e) {
-    // Missed only where the clock is set back before this process has a successor.
+    // The number in the file matters only if the clock is set back before this process has a
+    // successor.
     log::Warning("{}; going on with the clock's number", e.what());
   }
   return session;

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-// Follows the parser through the text and refuses a key that its object already has.
+// Observes the parser and refuses a key that its object already has.
 class DuplicateGuard {
  public:
   explicit DuplicateGuard(const std::string& source) : source_(source) {}

@@ -59,7 +59,7 @@ void ValidateVectors(const Config& config) {
   }
 }
 
-// Noise that the run's exploration does not add.
+// Refuses noise keys that the run's exploration does not use.
 void RefuseNoiseKeys(const Config& config) {
   const ExplorationConfig &exploration = config.exploration, usual;
   const ExplorationKind kind = ExplorationKindOf(config);
@@ -68,7 +68,7 @@ void RefuseNoiseKeys(const Config& config) {
   struct NoiseKey {
     const char* name;
     bool is_set, fits;
-    const char* kinds;  // that take it
+    const char* kinds;  // kinds of exploration that use the key
   };
   const NoiseKey keys[] = {
       {"exploration.sigma", exploration.sigma != usual.sigma, adds_noise, "gaussian | ou"},
@@ -100,8 +100,8 @@ void ValidateExploration(const Config& config) {
   }
 }
 
-// The keys of a policy with a deviation and of its entropy. Algorithms without section sac have its
-// defaults here.
+// Checks the keys of a policy with a deviation and of its entropy. Algorithms without section sac
+// have defaults here.
 void ValidateEntropy(const Config& config) {
   const Config usual;
   if (config.sac.temperature == "fixed" && config.sac.min_temperature > 0) {
@@ -133,7 +133,7 @@ void ValidateEntropy(const Config& config) {
   }
 }
 
-// Keys that another encoder would ignore.
+// Refuses keys that only the compact encoder uses.
 void ValidateCompact(const NetworkConfig& network) {
   if (network.encoder == "compact") return;
   const char* key = network.pool != 0          ? "network.pool"
@@ -145,7 +145,7 @@ void ValidateCompact(const NetworkConfig& network) {
                    network.encoder);
 }
 
-// The keys of encoders besides the critic's.
+// Checks the keys of encoders besides the critic's.
 void ValidateEncoders(const Config& config) {
   const NetworkConfig usual;
   const std::pair<const char*, bool> keys[] = {
@@ -164,7 +164,7 @@ void ValidateEncoders(const Config& config) {
   }
 }
 
-// Privileged inputs. PrivilegedBlocksOf checks whether the task records them.
+// Checks privileged inputs. PrivilegedBlocksOf checks whether the task records them.
 void ValidatePrivileged(const Config& config) {
   if (!config.sac.aux.empty() && !config.observation.pixels) {
     throw UsageError("sac.aux: nothing is encoded without observation.pixels; expected it unset");
@@ -180,7 +180,7 @@ void ValidatePrivileged(const Config& config) {
   }
 }
 
-// DrQ's K and M, where they are not the number of a transition's copies.
+// Checks DrQ's K and M if they differ from the number of a transition's copies.
 void ValidateShifts(const Config& config) {
   const ReplayConfig& replay = config.replay;
   const std::pair<const char*, int> keys[] = {{"replay.target_shifts", replay.target_shifts},
@@ -198,7 +198,7 @@ void ValidateShifts(const Config& config) {
   }
 }
 
-// A schedule that comes to 0 would say "no limit" of the one moment at which all should stop.
+// A schedule that reaches 0 would say "no limit" at the very moment when all should stop.
 void ValidateSamplesPerInsert(const Schedule& samples) {
   if (samples.constant() || samples.Least() > 0) return;
   throw UsageError(

@@ -39,7 +39,7 @@ void CheckValidity(const X509* certificate, const fs::path& file, std::time_t no
   }
 }
 
-// Checks as the DDS library does: the signature must be the authority's own, over exactly this
+// Checks as the DDS library does: the signature must be the authority's own and cover exactly this
 // text.
 void CheckSigned(const fs::path& file, const Certificate& ca, const fs::path& ca_file) {
   const std::string bytes = ReadFile(file);
@@ -49,7 +49,7 @@ void CheckSigned(const fs::path& file, const Certificate& ca, const fs::path& ca
   const Signed signature(SMIME_read_PKCS7(text.get(), &content));
   const Buffer signed_text(content);
   const Signers signers(sk_X509_new_null());
-  const Buffer plain = credentials::MakeBuffer();  // takes the text without its heading
+  const Buffer plain = credentials::MakeBuffer();  // receives the text without its heading
   constexpr int kFlags = PKCS7_TEXT | PKCS7_NOVERIFY | PKCS7_NOINTERN;
   if (signature != nullptr && signers != nullptr && sk_X509_push(signers.get(), ca.get()) > 0 &&
       PKCS7_verify(signature.get(), signers.get(), nullptr, content, plain.get(), kFlags) == 1) {

@@ -53,7 +53,7 @@ void SetSerialNumber(X509* certificate) {
           "set a serial number");
 }
 
-// A certificate for CN=`name`, made by `authority`, or by itself when that is null.
+// Makes a certificate for CN=`name`, signed by `authority`, or by its own key if that is null.
 Identity MakeIdentity(const std::string& name, const Identity* authority,
                       const Validity& validity) {
   Identity made{MakeKey(), Certificate(X509_new())};
@@ -89,7 +89,7 @@ void WriteIdentity(const Identity& identity, const fs::path& folder, const std::
   WriteFilePrivately(folder / (name + ".key"), Content(key));
 }
 
-// The document in S/MIME, signed by the authority.
+// Writes the document in S/MIME, signed by the authority.
 void WriteSigned(const std::string& document, const Identity& authority, const fs::path& file) {
   const int flags = PKCS7_DETACHED | PKCS7_TEXT | PKCS7_STREAM;
   const Buffer text = MakeBuffer(document), result = MakeBuffer();
@@ -101,7 +101,7 @@ void WriteSigned(const std::string& document, const Identity& authority, const f
   WriteFilePrivately(file, Content(result));
 }
 
-// Made under a name beside its own; gets that when it is complete.
+// A folder that is filled under a temporary name and gets its own name when it is complete.
 class NewFolder {
  public:
   explicit NewFolder(fs::path path) : path_(std::move(path)), made_(path_.string() + ".new") {

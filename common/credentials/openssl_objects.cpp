@@ -50,7 +50,7 @@ Certificate ReadCertificate(const std::filesystem::path& file) {
 
 Key ReadKey(const std::filesystem::path& file) {
   const Buffer text = MakeBuffer(ReadFile(file));
-  // A pass phrase is never asked for: no terminal may be attached.
+  // Never asks for a pass phrase, because no terminal may be attached.
   const auto no_phrase = [](char*, int, int, void*) { return -1; };
   Key key(PEM_read_bio_PrivateKey(text.get(), nullptr, no_phrase, nullptr));
   if (key == nullptr) {

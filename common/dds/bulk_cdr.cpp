@@ -6,7 +6,7 @@
 namespace shoal::dds {
 namespace {
 
-// Whether the bytes are a message of the present version, and its fields.
+// Reads the fields of a message. False if the bytes are not a whole message of the present version.
 template <class M>
 bool ReadBulk(std::span<const uint8_t> cdr, M* message) {
   CdrReader reader(cdr, CdrEncoding::kPlain1);

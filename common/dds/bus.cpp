@@ -18,7 +18,7 @@ namespace {
 
 constexpr size_t kMaxTagBytes = 255;
 
-// `transport` with the interface that "auto" stands for.
+// `transport` with "auto" replaced by an interface's name.
 TransportConfig ResolveInterface(const ClusterAddress& address, TransportConfig transport) {
   if (transport.interface == "auto") transport.interface = InterfaceTowards(address.host);
   return transport;
@@ -72,7 +72,7 @@ void Join(const std::string& xml_template, const ClusterAddress& address,
   const dds_entity_t handle =
       dds_create_participant(static_cast<dds_domainid_t>(id), nullptr, nullptr);
   if (handle < 0) {
-    joined = {};  // else it is our own half of a domain that has the ports
+    joined = {};  // otherwise this process's own domain would hold the ports
     ThrowJoinError(id, role, capture.text());
   }
   *domain = std::move(joined);

@@ -49,7 +49,7 @@ std::unique_ptr<Bus> ClaimDomain(const TransportConfig& transport, ClusterAddres
       *address = claim;
       return bus;
     } catch (const PortTakenError&) {
-      // Another run took it between the check and the join.
+      // Another run took the domain between the check and the join.
     }
   }
   const link::RunProcess& last = link::Servers().back();

@@ -34,7 +34,8 @@ struct DdsLogSink {
     }
   }
 
-  // The library warns once per damaged datagram, and anybody can send those. Any thread.
+  // Any thread. Lines are limited: the library warns about each damaged datagram, and anybody can
+  // send those.
   static void WriteWarning(std::string_view line) {
     static Mutex mutex;
     static LineBudget budget;

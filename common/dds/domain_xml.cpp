@@ -14,11 +14,11 @@
 namespace shoal::dds {
 namespace {
 
-// 65 kB fragments and the retransmission values are what carries megabyte samples at gigabytes per
-// second; with Cyclone's defaults a 10 MB sample takes seconds. MaxSampleSize bounds what one stray
-// datagram can make a receiver allocate. A receive buffer is filled from end to end before the
-// next: with the megabyte of Cyclone's default, a thread that gets a kilobyte a second touches new
-// memory for a quarter of an hour.
+// Fragments of 65 kB and the retransmission values carry megabyte samples at gigabytes per second;
+// with Cyclone's defaults a 10 MB sample takes seconds. MaxSampleSize bounds the memory that one
+// stray datagram makes a receiver allocate. A receive buffer is filled completely before the next
+// one. With the megabyte of Cyclone's default, a thread that receives a kilobyte a second touches
+// new memory for a quarter of an hour.
 constexpr std::string_view kTemplate =
     R"(<CycloneDDS xmlns="https://cdds.io/config"><Domain id="any">
  <General>
@@ -49,8 +49,8 @@ constexpr std::string_view kTemplate =
 </Domain></CycloneDDS>
 )";
 
-// A process announces itself to the other servers of the plane. The coordinator does not: every
-// process announces itself to it.
+// A process announces itself to the other servers of the plane. The coordinator does not, because
+// every process announces itself to the coordinator.
 std::string PeersElement(const ClusterAddress& address, Role role, Plane plane) {
   std::string element = "<Peers>";
   for (const link::RunProcess& server : link::Servers()) {
@@ -64,8 +64,8 @@ std::string PeersElement(const ClusterAddress& address, Role role, Plane plane) 
   return element + "</Peers>";
 }
 
-// A write waits from "high" on until unacknowledged bytes are below "low"; a writer begins with
-// "high init".
+// If unacknowledged bytes reach "high", a write waits until they are below "low". A new writer
+// begins with "high init" in place of "high".
 std::string WatermarksElement(Role role) {
   const uint64_t bound = link::UnreadBytesBound(role);
   return fmt::format(
@@ -88,7 +88,7 @@ std::string Substitute(std::string_view xml,
     xml.remove_prefix(begin + 1);
     const std::string_view name = xml.substr(0, xml.find('@'));
     if (name.size() == xml.size() || !IsPlaceholderName(name)) {
-      filled += '@';  // a plain character of the text
+      filled += '@';  // a literal @ of the text
       continue;
     }
     const auto value = values.find(name);

@@ -30,7 +30,7 @@ InterfaceList ListInterfaces() {
 
 using AddressList = std::unique_ptr<addrinfo, decltype(&freeaddrinfo)>;
 
-// The host's IPv4 addresses with the port ("" = none); null when there are none.
+// The host's IPv4 addresses with the port ("" = none), or null if there are none.
 AddressList Resolve(const std::string& host, const std::string& port) {
   addrinfo hints{};
   hints.ai_family = AF_INET;
@@ -94,7 +94,7 @@ bool HostResolves(const std::string& host) { return Resolve(host, "") != nullptr
 std::string InterfaceTowards(const std::string& host) {
   const AddressList found = Resolve(host, "9");
   if (found == nullptr) throw RuntimeError("host \"{}\" does not resolve to an IPv4 address", host);
-  // Connecting a datagram socket sends nothing: it only asks the routing table.
+  // Connecting a datagram socket sends nothing and only queries the routing table.
   const Descriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   sockaddr_in own{};
   socklen_t size = sizeof(own);

@@ -9,11 +9,11 @@
 namespace shoal::dds {
 namespace {
 
-// No report of ours has a tenth of it; a reader keeps the newest of each process.
+// Shoal's reports have less than a tenth of this. A reader keeps the newest report of each process.
 constexpr size_t kMostFigures = 1000;
 constexpr size_t kMostNameBytes = 200;
 
-// Doubles hold integers up to here exactly; arithmetic with it does not overflow.
+// Doubles hold integers up to here exactly, and arithmetic with such numbers does not overflow.
 constexpr double kLargestSetting = 9e15;
 
 bool IsShort(const std::string& name) { return name.size() <= kMostNameBytes; }
@@ -25,7 +25,7 @@ bool MakesSense(const MetricsMessage& message) {
          std::ranges::all_of(message.names, IsShort);
 }
 
-// Whether the bytes are a whole message, and its fields.
+// Reads the fields of a message. False if the bytes are not a whole message.
 template <class M>
 bool ReadMessage(std::span<const uint8_t> cdr, M* message) {
   CdrReader reader(cdr, CdrEncoding::kDelimited2);
@@ -73,7 +73,7 @@ bool ParseCdr(std::span<const uint8_t> cdr, ControlMessage* message) {
   if (!ReadMessage(cdr, message)) return false;
   const bool known = message->state == RunState::kRunning ||
                      message->state == RunState::kDraining || message->state == RunState::kStopping;
-  // Holds for every key that changes while a run goes on: counts, ratios and shares.
+  // True for every key that can change during a run: counts, ratios and shares.
   const auto possible = [](double value) { return value >= 0 && value <= kLargestSetting; };
   return known && std::isfinite(message->time) &&
          std::ranges::all_of(message->setting_values, possible) &&

@@ -14,7 +14,8 @@ QosHandle MakeQos(const link::TopicSettings& settings) {
   }
   if (settings.late_joiners) {
     dds_qset_durability(qos.get(), DDS_DURABILITY_TRANSIENT_LOCAL);
-    // Late joiners receive this depth, not that of the history.
+    // Late joiners receive samples up to this depth; the depth of the history does not apply to
+    // them.
     dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, settings.keep_last,
                                 DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
   } else {

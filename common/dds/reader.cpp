@@ -24,7 +24,7 @@ using link::TopicSettings;
 constexpr uint32_t kTakeAtOnce = 16;
 constexpr std::chrono::seconds kMalformedLogInterval{10};
 
-// A view of a taken sample's CDR bytes; gives the sample back when it goes out of scope.
+// A view of a taken sample's CDR bytes. Returns the sample at the end of its scope.
 class TakenCdr {
  public:
   explicit TakenCdr(ddsi_serdata* data)
@@ -46,8 +46,8 @@ class TakenCdr {
   ddsi_serdata* held_;
 };
 
-// Empties the reader's cache and calls deliver(well_formed, message) for each sample.
-// False when the cache was empty.
+// Empties the reader's cache and calls deliver(well_formed, message) for each sample. False if the
+// cache was empty.
 template <class M, class Deliver>
 bool TakeCdr(dds_entity_t reader, const Deliver& deliver) {
   ddsi_serdata* samples[kTakeAtOnce];
@@ -55,7 +55,7 @@ bool TakeCdr(dds_entity_t reader, const Deliver& deliver) {
   const dds_return_t taken = dds_takecdr(reader, samples, kTakeAtOnce, infos, DDS_ANY_STATE);
   for (dds_return_t i = 0; i < taken; ++i) {
     const TakenCdr cdr(samples[i]);
-    if (!infos[i].valid_data) continue;  // news of a writer's end
+    if (!infos[i].valid_data) continue;  // reports a writer's end
     M message;
     deliver(ParseCdr(cdr.bytes(), &message), message);
   }
@@ -69,7 +69,7 @@ class DdsReader final : public link::ReaderEnd {
       : on_message_(std::move(callback)),
         malformed_(bus.impl().MalformedCounter(Topic<M>::kSettings.name)),
         topic_(CreateTopic<M>(bus)) {
-    // The listener is set as the reader is created: no sample can arrive unnoticed before it.
+    // The listener is set when the reader is created, so no sample can arrive unnoticed.
     const TopicSettings& settings = Topic<M>::kSettings;
     const ListenerHandle listener = MakeListener<M>(this);
     dds_lset_data_available(listener.get(), &DdsReader::OnData);
@@ -79,7 +79,8 @@ class DdsReader final : public link::ReaderEnd {
                      std::string("reader of topic ") + settings.name);
   }
 
-  // Cyclone waits for a running callback before it resets the listener; none starts afterwards.
+  // Cyclone waits for a running callback before it resets the listener. No callback starts
+  // afterwards.
   ~DdsReader() override {
     if (reader_) dds_set_listener(reader_.get(), nullptr);
     reader_.Reset();
@@ -97,7 +98,7 @@ class DdsReader final : public link::ReaderEnd {
   uint64_t Malformed() const override { return malformed_->load(std::memory_order_relaxed); }
 
  private:
-  // An exception from the callback would unwind through C: noexcept makes it end the process.
+  // An exception from the callback would unwind through C, so noexcept ends the process.
   static void OnData(dds_entity_t handle, void* argument) noexcept {
     auto* self = static_cast<DdsReader*>(argument);
     (void)self->callbacks_.load(std::memory_order_acquire);
@@ -117,7 +118,7 @@ class DdsReader final : public link::ReaderEnd {
     }
   }
 
-  // At most one line per interval and topic, whatever comes.
+  // Logs at most one line per interval and topic.
   void OnMalformed(uint64_t count) {
     if (Now() - last_said_ < kMalformedLogInterval) return;
     last_said_ = Now();
@@ -127,11 +128,11 @@ class DdsReader final : public link::ReaderEnd {
   }
 
   std::function<void(const M&)> on_message_;
-  std::shared_ptr<std::atomic<uint64_t>> malformed_;  // the bus counts with it, too
-  SteadyTime last_said_{};                            // receive thread, as `said_`
+  std::shared_ptr<std::atomic<uint64_t>> malformed_;  // shared with the bus
+  SteadyTime last_said_{};                            // used by the receive thread, like `said_`
   uint64_t said_ = 0;
-  // How often OnData has run. Orders it after the constructor and before the destructor: Cyclone
-  // does so by locks of its own, which the thread sanitizer cannot see.
+  // Number of calls of OnData. The counter orders OnData after the constructor and before the
+  // destructor for the thread sanitizer, which cannot see Cyclone's own locks.
   std::atomic<uint64_t> callbacks_{0};
   Entity topic_;
   Entity reader_;

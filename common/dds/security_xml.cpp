@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Debian keeps the plugins in a folder beside the library itself, where the loader does not look.
+// Debian has the plugins in a folder beside the library, where the loader does not look.
 fs::path PluginPath(const std::string& plugin) {
   const std::string name = "libdds_security_" + plugin + ".so";
   Dl_info library{};
@@ -38,8 +38,8 @@ std::string Library(const std::string& plugin, const std::string& functions) {
       EscapeMarkup(PluginPath(plugin).string()), functions, functions);
 }
 
-// The library puts environment variables into its configuration, and its access control leaves out
-// quotes and takes backslashes for slashes: there is no way to name such a folder to it.
+// The library expands environment variables in its configuration. Its access control drops quotes
+// and takes backslashes for slashes. A folder with such a name therefore cannot be passed to it.
 void CheckName(const fs::path& folder) {
   for (const char* text : {"${", "\"", "\\"}) {
     if (folder.string().find(text) == std::string::npos) continue;

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pthread_cond_timedwait on the steady clock in place of libc's: steady_waits.h says why. Also a
-// library of its own, which the actor of the Python package has the loader bring in before libc.
+// Replaces libc's pthread_cond_timedwait by a wait on the steady clock; steady_waits.h says why.
+// This file is also a library of its own, which the loader puts before libc in the actor of the
+// Python package.
 #include <pthread.h>
 
 #include <ctime>
 
 #include "common/dds/steady_waits.h"
 
-// The thread sanitizer brings its own version and would not see ours.
+// The thread sanitizer has its own version and would not see this one.
 #if !defined(__SANITIZE_THREAD__)
 
 namespace {
 
 constexpr long kNsPerSecond = 1'000'000'000;
-// Condition variables may also be set to the steady clock, which counts from the machine's start:
-// times before 2001 are taken for its.
+// A condition variable may also use the steady clock, which counts from the machine's start. Times
+// before 2001 are taken for times of the steady clock.
 constexpr time_t kWallClockFrom = 1'000'000'000;
 
 timespec Sum(const timespec& a, const timespec& b) {

@@ -6,7 +6,8 @@
 namespace shoal::dds {
 
 void TuneMalloc() {
-  // By default every megabyte sample is a fresh mmap: most of a receiver's time is page faults.
+  // By default every megabyte sample is a fresh mmap, and a receiver spends most time in page
+  // faults.
   mallopt(M_MMAP_THRESHOLD, 1 << 30);
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
   mallopt(M_TOP_PAD, 64 << 20);

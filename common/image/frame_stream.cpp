@@ -49,7 +49,7 @@ void FrameStreamWriter::Write(const FrameRecordHeader& record, std::span<const f
   Put(action.data(), action.size_bytes());
   Put(input.data(), input.size());
   Put(view.data(), view.size());
-  // Reports a full disk here: the result of closing the file is not checked.
+  // Reports a full disk here, because the result of closing the file is not checked.
   if (std::fflush(file_.get()) != 0) {
     throw RuntimeError("cannot write '{}': {}", path_.string(), std::strerror(errno));
   }

@@ -30,7 +30,7 @@ std::optional<int> ChunkIntake::FindSession(const TransitionChunk& chunk, uint64
   }
   std::optional<int> i = sessions_.Find(chunk.actor, chunk.session);
   if (i) return i;
-  // chunk.session > known: the difference cannot wrap.
+  // chunk.session > known, so the difference cannot wrap around.
   const bool follows = newest && chunk.session - known <= kSessionStep;
   if (chunk.session > latest_session && !follows) {
     *fate = ChunkFate::kFuture;
@@ -49,7 +49,7 @@ ChunkResult ChunkIntake::TakePosition(const TransitionChunk& chunk, int i) {
   SessionCounters counters = sessions_.at(i);
   ChunkResult result;
   if (chunk.first_sequence <= counters.highest + 1) return result;
-  if (unheard_.erase(i) == 0) return {.fate = ChunkFate::kAhead};  // it cannot be
+  if (unheard_.erase(i) == 0) return {.fate = ChunkFate::kAhead};  // not a session's first message
   result.lost = chunk.first_sequence - 1 - counters.highest;
   counters.lost += result.lost;
   counters.highest += result.lost;
@@ -69,8 +69,8 @@ ChunkResult ChunkIntake::Take(const TransitionChunk& chunk, uint64_t latest_sess
   SessionCounters counters = sessions_.at(*i);
   if (chunk.first_sequence > counters.highest + 1) return {.fate = ChunkFate::kAhead};
   unheard_.erase(*i);
-  // The counters are written after each record: whenever this process is killed, at most one stored
-  // record is not counted yet, and the constructor finds it by its sequence.
+  // The counters are written after each record. If this process is killed, at most one stored
+  // record is not counted, and the constructor finds that record by its sequence.
   const size_t record_bytes = static_cast<size_t>(layout_.record_bytes());
   for (uint32_t k = 0; k < chunk.count; ++k) {
     const uint64_t sequence = chunk.first_sequence + k;
@@ -82,6 +82,7 @@ ChunkResult ChunkIntake::Take(const TransitionChunk& chunk, uint64_t latest_sess
     TakeRecord(chunk.payload.data() + k * record_bytes, sequence, &counters, &result);
     sessions_.Update(*i, counters);
   }
+  // For a chunk of duplicates alone, the loop has not written the counters.
   if (result.duplicates == chunk.count) sessions_.Update(*i, counters);
   return result;
 }

@@ -37,8 +37,8 @@ bool IntakeProblems::Report(SteadyTime now, const IntakeCounters& counters,
   return true;
 }
 
-// Superseded ones are no problem: their actor's process is gone. The receiver itself says that its
-// table is full.
+// Superseded chunks are no problem, because their actor's process has ended. The receiver itself
+// reports a full table.
 void IntakeProblems::ReportChunks(const IntakeCounters& counters,
                                   const IntakeCounters& before) const {
   if (const uint64_t n = counters.wrong_spec_chunks - before.wrong_spec_chunks) {

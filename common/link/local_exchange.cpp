@@ -10,11 +10,11 @@
 namespace shoal::link {
 namespace {
 
-// A wait without a deadline wakes up this often for nothing.
+// Waits without a deadline wake up this often, without effect.
 constexpr std::chrono::minutes kIdleWait{1};
 
-// Whether this thread is in a reader's callback, where waiting for a callback's end, for one, would
-// never end.
+// Whether this thread is in a reader's callback. There, for example, a wait for the callback's end
+// would never end.
 thread_local bool in_callback = false;
 
 void CheckNotInCallback(const TopicSettings& settings) {
@@ -23,7 +23,7 @@ void CheckNotInCallback(const TopicSettings& settings) {
       << "topic " << settings.name << ": a callback must not make or destroy writers and readers";
 }
 
-// noexcept: an exception from a callback ends the process here, where its cause is on the stack.
+// noexcept: an exception from a callback ends the process here, with its cause on the stack.
 void CallBack(const std::function<void(const StoredSample&)>& deliver,
               const StoredSample& sample) noexcept {
   in_callback = true;
@@ -41,7 +41,7 @@ void LocalExchange::Add(Writer& writer) {
 
 void LocalExchange::Add(Reader& reader) {
   CheckNotInCallback(reader.settings_);
-  std::vector<SharedSample> pushed_out;  // none: the histories keep no more than the queue
+  std::vector<SharedSample> pushed_out;  // stays empty: the histories hold no more than the queue
   const MutexLock lock(mutex_);
   Ends& ends = topics_[reader.settings_.name];
   ends.readers.push_back(&reader);
@@ -178,7 +178,7 @@ void LocalExchange::Enqueue(Reader& reader, const SharedSample& sample,
     ++sample->unread().samples;
     sample->unread().bytes += sample->bytes();
   }
-  // A reader that has samples or is called is in the list or will be put there.
+  // A reader that has samples, or whose callback runs, is in the list or will be added.
   const bool ready = reader.queue_.empty() && !reader.called_;
   if (SharedSample old = reader.queue_.Push(sample)) {
     CountRead(*old);
@@ -222,7 +222,7 @@ void LocalExchange::FinishCall(Reader& reader, StoredSample& sample) {
   const MutexLock lock(mutex_);
   CountRead(sample);
   reader.called_ = false;
-  // Behind the others, so that they get their turn.
+  // The reader is added at the end, so that others get their turn.
   if (!reader.queue_.empty()) reader.receiver_.ready_.push_back(&reader);
   reader.returned_.NotifyAll();
 }

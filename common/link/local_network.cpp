@@ -14,7 +14,7 @@
 namespace shoal::link {
 namespace {
 
-// Counts what is alive in `count`.
+// Counts its living instances in `count`.
 class Counted {
  public:
   explicit Counted(std::atomic<int>& count) : count_(count) { ++count_; }
@@ -37,8 +37,8 @@ class LocalWriter final : public WriterEnd<M> {
   }
   ~LocalWriter() override { exchange_.Remove(writer_); }
 
-  // A refused message is not copied. As one thread at a time writes, the room does not get less
-  // before Put.
+  // Waits for room before the copy, so that a refused message is not copied. One thread at a time
+  // writes, so the room does not shrink before Put.
   bool Write(const M& message) override {
     if (!exchange_.WaitForRoom(writer_, StoredMessage<M>::Bytes(message))) return false;
     exchange_.Put(writer_, std::make_shared<StoredMessage<M>>(writer_.unread(), message));
@@ -81,7 +81,7 @@ class LocalReader final : public ReaderEnd {
   LocalExchange::Reader reader_;
 };
 
-// Calls back a hub's readers of one plane.
+// The thread that calls a hub's readers of one plane.
 class ReceiveThread {
  public:
   explicit ReceiveThread(LocalExchange& exchange)

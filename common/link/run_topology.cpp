@@ -37,7 +37,7 @@ std::optional<int> FixedPort(Role role, uint32_t index) {
 }
 
 RunTopology::RunTopology(const Config& config, std::span<const int> actors_elsewhere) {
-  // Each process starts after those that it sends its work to.
+  // Each process starts after the processes that receive its work.
   for (const Role role : {Role::kReplay, Role::kLearner}) {
     if (role == Role::kReplay && LearnsOnPolicy(config)) continue;
     std::ranges::copy_if(kServers, std::back_inserter(children_),

@@ -20,7 +20,7 @@ SharedSample SampleQueue::Pop() {
   SharedSample sample = std::move(samples_.front());
   samples_.pop_front();
   if (keep_last_ > 0) {
-    // The oldest of all is the oldest of its writer and key.
+    // The oldest sample of all is also the oldest of its writer and key.
     const auto places = places_.find(Of(*sample));
     places->second.pop_front();
     if (places->second.empty()) places_.erase(places);

@@ -9,7 +9,7 @@
 namespace shoal::nn {
 namespace {
 
-constexpr int kMostSide = 1024;  // of an image: the range of observation.height
+constexpr int kMostSide = 1024;  // largest value of observation.height
 
 NetworkPlan BuildEncoder(const EncoderKind& kind, const NetworkConfig& network,
                          const MapShape& images, const std::string& name) {
@@ -18,7 +18,7 @@ NetworkPlan BuildEncoder(const EncoderKind& kind, const NetworkConfig& network,
   return plan;
 }
 
-// The smallest square images that the encoder takes; 0 if there are none.
+// Side of the smallest square images that the encoder takes; 0 if there are none.
 int LeastSide(const EncoderKind& kind, const NetworkConfig& network, int channels) {
   for (int side = 1; side <= kMostSide; ++side) {
     try {
@@ -84,7 +84,7 @@ NetworkPlan PlanEncoder(const NetworkConfig& network, const ObservationSpec& spe
     return BuildEncoder(kind, network, images, name);
   } catch (const Error& error) {
     const int side = LeastSide(kind, network, images.channels);
-    if (side <= std::min(spec.height, spec.width)) throw;  // something else than too small
+    if (side <= std::min(spec.height, spec.width)) throw;  // the cause is not the size
     throw UsageError(
         "network.encoder = {}: images of {}x{} are too small ({}), expected at least "
         "{}x{}",

@@ -80,7 +80,8 @@ struct Weighted {
   const float* values;
 };
 
-// The sum of weight * values in the given order to mean[0..n), which may be one of them.
+// Writes the sum of weight * values, in the given order, to mean[0..n), which may be one of the
+// arrays.
 void Average(std::span<const Weighted> arrays, int64_t n, float* mean) {
   float sum[kBlock];
   for (int64_t at = 0; at < n; at += kBlock) {
@@ -118,7 +119,7 @@ std::shared_ptr<Adam::Shared> Adam::MakeShared() const {
   return shared;
 }
 
-// Each replica writes its own gradients, from those of all.
+// Each replica writes its share of the mean of all gradients to its own gradients.
 void Adam::AverageShares() {
   const std::vector<Adam*>& peers = shared_->members;
   replica_->Meet();
@@ -206,7 +207,8 @@ void Adam::Export(const std::string& group, TensorMap* tensors) const {
   ExportCounter("adam.steps." + group, steps_, tensors);
 }
 
-// Into the arrays that the next step would write, so that a refusal leaves the others as they are.
+// Reads into the arrays that the next step would write, so that a refusal leaves the others
+// unchanged.
 void Adam::Import(const TensorMap& tensors, const std::string& group, const std::string& source) {
   const uint64_t steps = ImportCounter(tensors, "adam.steps." + group, source);
   const size_t next = 1 - current_;

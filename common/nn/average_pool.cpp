@@ -17,7 +17,7 @@ struct Window {
   int begin, end;
 };
 
-// Output `i` of `outputs` along a side of `inputs`.
+// The window of output `i`, of `outputs` along a side of `inputs`.
 Window WindowOf(int i, int inputs, int outputs) {
   return {static_cast<int>(int64_t{i} * inputs / outputs),
           static_cast<int>((int64_t{i + 1} * inputs + outputs - 1) / outputs)};
@@ -46,8 +46,8 @@ void Load(const uint16_t* in, int n, float* out) { Bf16ToFloats(in, n, out); }
 void Save(const float* in, int n, float* out) { std::copy_n(in, n, out); }
 void Save(const float* in, int n, uint16_t* out) { FloatsToBf16(in, n, out); }
 
-// Plane by plane through f32: in (planes, n_in) -> out (planes, n_out), summed up by
-// add(plane in, plane out) from zeros.
+// Maps plane by plane through f32: in (planes, n_in) -> out (planes, n_out). add(plane in, plane
+// out) adds to zeros.
 template <class T, class AddPlane>
 void MapPlanes(int planes, const memory& in, int n_in, const memory& out, int n_out,
                const AddPlane& add) {

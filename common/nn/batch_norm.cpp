@@ -97,6 +97,7 @@ void BatchNorm::MeasureRunning() {
   const auto* variance = static_cast<const float*>(variance_.get_data_handle());
   const float *former_mean = running_mean_.value(), *former_variance = running_variance_.value();
   float *next_mean = running_mean_.next_value(), *next_variance = running_variance_.next_value();
+  // The running variance is the unbiased one, as in PyTorch.
   const float unbiased = float(double(count_) / double(count_ - 1));
   for (int64_t c = 0; c < weight_.shape()[0]; ++c) {
     next_mean[c] = (1 - kMomentum) * former_mean[c] + kMomentum * mean[c];

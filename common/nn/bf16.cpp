@@ -10,7 +10,7 @@ SHOAL_CPU_CLONES void FloatsToBf16(const float* in, int64_t n, uint16_t* out) {
     const uint32_t bits = std::bit_cast<uint32_t>(in[i]);
     uint16_t rounded;
     Store(in[i], &rounded);
-    const bool nan = (bits & 0x7fffffffu) > 0x7f800000u;  // rounding could carry it to infinity
+    const bool nan = (bits & 0x7fffffffu) > 0x7f800000u;  // rounding could turn it into infinity
     out[i] = uint16_t(nan ? (bits >> 16) | 0x40u : rounded);
   }
 }

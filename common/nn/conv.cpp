@@ -18,6 +18,7 @@ Conv::Conv(const LayerContext& context, const LayerPlan& plan, const memory& sou
            const memory& source_gradient)
     : strides_{plan.stride, plan.stride},
       padding_{plan.padding, plan.padding},
+      // Batch normalisation applies the activation itself.
       relu_(plan.activation == Activation::kRelu && plan.batch_norm.empty()),
       has_bias_(plan.bias),
       weight_(context.parameters->Find(plan.name + ".weight")) {

@@ -35,7 +35,8 @@ void CriticHeads::BackwardMlps(QGradients q_gradients, bool parameters) {
   bool first = true;
   for (size_t i = 0; i < mlps_.size(); ++i) {
     const bool absent = !q_gradients[i];
-    // Gradients of parameters are overwritten, so one that is no part of the loss passes zeros.
+    // Gradients of parameters are overwritten, so a function that is not part of the loss passes
+    // zeros.
     if (absent && !parameters) continue;
     mlps_[i].Backward(absent ? zeros_.data() : HostValues(q_gradients[i]).data(),
                       {.parameters = parameters, .source = true});

@@ -29,8 +29,8 @@ Encoder::Encoder(const LayerContext& context, const NetworkPlan& plan)
   BuildFeatures(context);
 }
 
-// Backward passes run from the last layer to the first: of several readers of one map the last one
-// overwrites its gradient, the others add to it.
+// Backward passes run from the last layer to the first. If several layers read one map, the last of
+// them overwrites the map's gradient and the others add to it.
 MapSource Encoder::SourceOf(const NetworkPlan& plan, int reader, int read, MapSource* shared) {
   MapSource source = outputs_[size_t(read)];
   if (!source.gradient) return source;
@@ -80,8 +80,8 @@ void Encoder::Build(const LayerContext& context, const NetworkPlan& plan) {
   }
 }
 
-// The heads see rows, whatever layout the last layer has: one copy here is cheaper than one
-// in each of them.
+// The heads read rows, whatever layout the last layer has. One copy here is cheaper than one in
+// each head.
 void Encoder::BuildFeatures(const LayerContext& context) {
   const dnnl::memory& map = outputs_.back().values;
   const dnnl::memory::dims dims = DimsOf(map);

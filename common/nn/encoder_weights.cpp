@@ -22,7 +22,8 @@ bool IsTorchvisionsOwn(std::string_view name) {
          name.ends_with(".num_batches_tracked");
 }
 
-// A deeper network of the same kind has every tensor that is asked for, and more.
+// Refuses tensors that the network does not have: a deeper network of the same kind has all of its
+// tensors and more.
 void RefuseOthers(const TensorMap& tensors, const ParameterSet& set, bool prefixed,
                   const NetworkConfig& network) {
   for (const auto& [name, tensor] : tensors) {

@@ -21,8 +21,8 @@ struct Scaling {
   float factor, shift;
 };
 
-// Columns [j, j + n) of a row of 2x2 windows. A pair of neighbouring bytes is one 16-bit word,
-// which keeps the loop free of shuffles.
+// Pools columns [j, j + n) of a row of 2x2 windows. A pair of neighbouring bytes is one 16-bit
+// word, which keeps the loop free of shuffles.
 template <class Out>
 [[gnu::always_inline]] inline void PoolPairs(const uint8_t* upper, const uint8_t* lower, int n,
                                              Scaling scale, Out* out) {
@@ -35,8 +35,8 @@ template <class Out>
   }
 }
 
-// One plane with pool = 2. Whole blocks of lanes; the last one of a row overlaps its neighbour
-// instead of leaving a remainder.
+// Pools one plane with pool = 2 in whole blocks of lanes. The last block of a row overlaps its
+// neighbour, so there is no remainder.
 template <class Out>
 [[gnu::always_inline]] inline void PoolPlaneByTwo(const uint8_t* in, int width, int rows,
                                                   int columns, Scaling scale, Out* out) {
@@ -65,7 +65,7 @@ SHOAL_CPU_CLONES void PoolByTwo(const uint8_t* in, int width, int rows, int colu
   PoolPlaneByTwo(in, width, rows, columns, scale, out);
 }
 
-// One plane with pool = 1: scaling alone.
+// One plane with pool = 1, which only scales.
 template <class Out>
 [[gnu::always_inline]] inline void ScalePixels(const uint8_t* in, int64_t n, Scaling scale,
                                                Out* out) {
@@ -82,8 +82,8 @@ SHOAL_CPU_CLONES void Scale(const uint8_t* __restrict in, int64_t n, Scaling sca
   ScalePixels(in, n, scale, out);
 }
 
-// sums[j] = sum of column j over `rows` rows of `width` bytes; a pixel is at most 255 and there are
-// at most kMaxPool rows, so 16 bits hold it. All pixels pass here, in a loop without strides.
+// sums[j] = sum of column j over `rows` rows of `width` bytes. A pixel is at most 255 and there are
+// at most kMaxPool rows, so 16 bits hold the sum. This loop reads every pixel, without strides.
 SHOAL_CPU_CLONES void SumRows(const uint8_t* __restrict in, int rows, int width,
                               uint16_t* __restrict sums) {
   for (int j = 0; j < width; ++j) sums[j] = in[j];
@@ -103,8 +103,8 @@ template <class Out>
   }
 }
 
-// One row of windows from its columns' sums. Where the compiler knows the pool it reads the sums in
-// vectors.
+// Writes one row of windows from the sums of its columns. If the compiler knows the pool, it reads
+// the sums in vectors.
 template <class Out>
 [[gnu::always_inline]] inline void PoolRow(const uint16_t* sums, int columns, int pool,
                                            Scaling scale, Out* out) {
@@ -162,8 +162,8 @@ struct Moments {
   uint64_t sum = 0, squares = 0;
 };
 
-// Sums of up to 32,768 bytes fit 31 bits (32,768 * 255^2 < 2^31); signed 16-bit factors are what
-// the multiply-and-add instructions take.
+// Sums of up to 32,768 bytes fit 31 bits (32,768 * 255^2 < 2^31). The multiply-and-add instructions
+// take signed 16-bit factors.
 SHOAL_CPU_CLONES Moments MomentsOf(const uint8_t* in, int n) {
   int32_t sum = 0, squares = 0;
 #pragma omp simd reduction(+ : sum, squares)

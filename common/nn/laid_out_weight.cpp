@@ -12,14 +12,14 @@ namespace {
 constexpr dnnl::memory::dim kPieceElements = 8192;  // about 6 us, of which 1 us is the call
 constexpr dnnl::memory::dim kPieceUnit = 64;        // no layout has larger blocks
 
-// Consecutive ranges of one dimension of a weight, each `length` long but for the last one.
+// Consecutive ranges of one dimension of a weight. Each is `length` long, except the last.
 struct Pieces {
   int dimension = 0, count = 1;
   dnnl::memory::dim length = 0;
 };
 
-// The longest dimension in pieces of whole blocks. The last piece must end where the dimension
-// ends, because oneDNN knows no part of a padded block: other weights stay whole.
+// Cuts the longest dimension into pieces of whole blocks. oneDNN cannot describe a part of a padded
+// block, so the last piece must end with the dimension. Other weights stay whole.
 Pieces Cut(const dnnl::memory::dims& shape) {
   const auto longest = std::ranges::max_element(shape);
   dnnl::memory::dim elements = 1;
@@ -62,6 +62,7 @@ LaidOutWeight::LaidOutWeight(const Parameter& weight, const dnnl::memory::desc& 
                              std::shared_ptr<Scratchpad> scratchpad)
     : weight_(weight), f32_(PlainF32(weight.shape()), CpuEngine(), nullptr) {
   SharedLayouts* layouts = weight.set().layouts();
+  // No layout is shared without other replicas, or if the weight already has the wanted layout.
   if (!weight.borrowed() && (layouts == nullptr || f32_.get_desc() == wanted)) {
     from_f32_ = Relayout::Before(f32_, wanted, std::move(scratchpad));
     return;
@@ -80,6 +81,7 @@ void LaidOutWeight::Share(SharedLayouts* layouts, const dnnl::memory::desc& want
                           const std::shared_ptr<Scratchpad>& scratchpad) {
   const dnnl::memory::desc plain = f32_.get_desc();
   Pieces pieces = Cut(weight_.shape());
+  // A layout that cannot be cut is written as one piece.
   if (!PieceOf(wanted, pieces, pieces.count - 1)) pieces = {0, 1, weight_.shape()[0]};
   bool writes = false;
   shared_ = layouts->Join(weight_.offset(), wanted, pieces.count, weight_.set().rank(), &writes);
@@ -104,7 +106,7 @@ void LaidOutWeight::Refresh() {
 void LaidOutWeight::RefreshBorrowed() {
   const PlainValues plain = weight_.plain();
   if (plain.data == nullptr) return;
-  // The memory is only read; oneDNN has no handle to constant memory.
+  // The memory is only read, but oneDNN has no handle to constant memory.
   auto* data = const_cast<uint8_t*>(plain.data);
   if (plain.aligned && !plain.bf16) {
     f32_.set_data_handle(data);
@@ -113,6 +115,7 @@ void LaidOutWeight::RefreshBorrowed() {
     bf16_.set_data_handle(data);
     from_bf16_.Run();
   } else {
+    // Unaligned values, and bf16 values that oneDNN cannot reorder, are widened first.
     std::vector<float> wide(f32_.get_desc().get_size() / sizeof(float));
     Widen(plain, int64_t(wide.size()), wide.data());
     f32_.set_data_handle(wide.data());

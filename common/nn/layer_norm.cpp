@@ -14,7 +14,7 @@ namespace {
 constexpr float kLayerEpsilon = 1e-5f;
 constexpr int kMinParallel = 1 << 17;  // elements below which waking other threads costs more
 
-// Runs body(begin, end) over rows, in parallel where there is enough to do.
+// Runs body(begin, end) over rows, in parallel if there is enough to do.
 template <class Body>
 void ForRows(const RowShape& shape, const Body& body) {
   if (int64_t(shape.rows) * shape.columns < kMinParallel) {

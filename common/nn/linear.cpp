@@ -9,7 +9,7 @@ namespace {
 
 using dnnl::memory;
 
-// The precision whose compute type is the source's.
+// The precision whose compute type is the source's type.
 Precision PrecisionOf(const memory& source) {
   return TypeOf(source) == memory::data_type::bf16 ? Precision::kBf16 : Precision::kF32;
 }
@@ -46,8 +46,9 @@ void Linear::BuildBackward(const LayerContext& context, const memory& source,
                            const memory& source_gradient,
                            const dnnl::inner_product_forward::primitive_desc& forward) {
   const memory& gradient = output_gradient_.compute();
-  // Replicas have few rows, so that bringing whole gradients from another layout would take longer
-  // than to compute them. With one replica the preferred layout keeps the bits of earlier versions.
+  // Replicas have few rows, so copying whole gradients from another layout would take longer than
+  // computing them. With one replica, the preferred layout keeps the results of earlier versions
+  // bit for bit.
   const auto weights = DescribeBackward<dnnl::inner_product_backward_weights>(
       forward, AnyLayout(DimsOf(source), TypeOf(source)),
       context.plain_gradients ? PlainF32(weight_.shape())

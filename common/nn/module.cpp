@@ -32,7 +32,7 @@ void CopyParameters(const ParameterSet& online, ParameterSet* average) {
   std::copy_n(online.values(), online.size(), average->values());
 }
 
-// Statistics are the first replica's share: there are none where there are several.
+// Statistics belong to the first replica's share. With several replicas there are none.
 void MoveTowards(float tau, const ParameterSet& online, ParameterSet* average,
                  const Replica& replica) {
   CHECK(online.size() == average->size()) << online.size() << " and " << average->size();

@@ -11,7 +11,7 @@
 namespace shoal::nn {
 namespace {
 
-// Behind `tensor`, along the first dimension.
+// Appends the values to `tensor` along the first dimension.
 void Stack(const NamedTensor& more, const std::string& name, const std::string& map_file,
            NamedTensor* tensor) {
   const auto rest = [](const NamedTensor& t) {
@@ -28,7 +28,7 @@ void Stack(const NamedTensor& more, const std::string& name, const std::string& 
   tensor->data.insert(tensor->data.end(), more.data.begin(), more.data.end());
 }
 
-// The file's names that one of ours is mapped to.
+// The names in the file to which one of Shoal's names is mapped.
 std::vector<std::string> Sources(const std::string& name, const nlohmann::json& value,
                                  const std::string& map_file) {
   if (value.is_string()) return {value.get<std::string>()};

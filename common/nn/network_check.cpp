@@ -14,7 +14,7 @@ namespace {
 constexpr int64_t kHeaderBytesPerTensor = 256;  // name, type, shape and offsets in JSON
 constexpr int64_t kMostNumbers = std::numeric_limits<int>::max();
 
-// Every network of the policy and the critics.
+// Layers of every network of the policy and the critics.
 std::vector<LayerPlan> Layers(const NetworkConfig& network, const ObservationSpec& spec,
                               bool policy_alone) {
   std::vector<LayerPlan> layers;
@@ -49,7 +49,7 @@ void CheckArrays(const NetworkConfig& network, const ObservationSpec& spec, int 
   }
 }
 
-// A batch's variance takes more than one value.
+// The variance of a batch needs more than one value.
 void CheckStatistics(const NetworkConfig& network, const ObservationSpec& spec, int batch) {
   const NetworkPlan encoder = PlanEncoder(network, spec);
   for (const LayerPlan& layer : encoder.layers()) {

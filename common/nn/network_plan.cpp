@@ -10,10 +10,10 @@
 namespace shoal::nn {
 namespace {
 
-// The usual gain in front of a ReLU's halved variance.
+// The usual gain before a ReLU, which halves the variance.
 const double kConvolutionGain = std::sqrt(2.0);
 
-// One side of a map after a window has passed over it.
+// Number of places of a window along one side of a map.
 int Windows(int side, int kernel, int stride, int padding) {
   return (side + 2 * padding - kernel) / stride + 1;
 }
@@ -48,7 +48,7 @@ std::vector<ParameterSpec> LayerPlan::Parameters() const {
   if (kind != Kind::kConvolution && kind != Kind::kLinear) return {};
   const int64_t outputs = output.channels;
   std::vector<int64_t> weight{outputs, input.channels};
-  int64_t inputs = input.channels;  // of one output
+  int64_t inputs = input.channels;  // of each output
   if (kind == Kind::kConvolution) {
     weight.insert(weight.end(), {kernel, kernel});
     inputs *= int64_t{kernel} * kernel;

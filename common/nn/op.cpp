@@ -61,6 +61,7 @@ Op::Op(dnnl::primitive primitive, const dnnl::memory::desc& scratch,
        std::shared_ptr<Scratchpad> scratchpad)
     : primitive_(std::move(primitive)), scratchpad_(std::move(scratchpad)) {
   for (const auto& [index, memory] : arguments) {
+    // An absent argument, such as the bias of a layer without one.
     if (!memory) continue;
     memories_.push_back(memory);
     arguments_.push_back({index, memory.get()});
@@ -93,6 +94,7 @@ Op Op::ReorderPart(const dnnl::memory& from, const dnnl::memory::desc& from_part
 }
 
 void Op::Run() {
+  // The shared scratchpad may have grown since this operation was built.
   if (scratch_) scratch_.set_data_handle(scratchpad_->Data());
   const dnnl_status_t status = dnnl_primitive_execute(primitive_.get(), CpuStream().get(),
                                                       int(arguments_.size()), arguments_.data());

@@ -7,8 +7,9 @@
 #include "common/base/check.h"
 #include "common/nn/precision.h"
 
-// The entry points of libgomp that a compiler's `#pragma omp parallel` calls. Used directly so that
-// a compiler with an OpenMP run-time of its own does not start a second pool beside oneDNN's.
+// The entry points of libgomp that a compiler's `#pragma omp parallel` calls. They are called
+// directly, so that a compiler with another OpenMP runtime does not start a second pool beside
+// oneDNN's.
 extern "C" {
 void GOMP_parallel(void (*body)(void*), void* data, unsigned threads, unsigned flags);
 void omp_set_num_threads(int threads);
@@ -16,7 +17,7 @@ int omp_get_max_threads(void);
 int omp_get_thread_num(void);
 int omp_get_num_threads(void);
 #ifdef __SANITIZE_THREAD__
-// libgomp's fork and join are invisible to the thread sanitizer; these tell it about them.
+// The thread sanitizer cannot see libgomp's fork and join; these functions tell it about both.
 void __tsan_acquire(void* address);
 void __tsan_release(void* address);
 #endif

@@ -28,7 +28,7 @@ std::string Shape(const std::vector<int64_t>& shape) {
   return shape.empty() ? "scalar" : fmt::format("{}", fmt::join(shape, "x"));
 }
 
-// The tensor of this name, of a parameter's shape and a type that Import takes.
+// The tensor of a parameter, with its shape and a type that Import takes. Throws Error otherwise.
 const TensorView& Fitting(const ParameterSpec& parameter, const TensorViews& tensors,
                           const std::string& name, const std::string& source) {
   const TensorView* found = tensors.Find(name);
@@ -63,7 +63,7 @@ void InitialiseOne(const ParameterSpec& parameter, uint64_t seed, float* values)
       std::fill_n(values, count, 1.f);
       return;
     case Start::Kind::kOrthogonal: {
-      // Each output's weights are one row.
+      // The weights of each output are one row.
       const int64_t rows = parameter.shape[0];
       FillOrthogonal(rows, count / rows, scale, &random, values);
       return;
@@ -217,6 +217,7 @@ void ParameterSet::ExportFirst(size_t specs, const float* array, const std::stri
 void ParameterSet::ImportFirst(size_t specs, const TensorViews& tensors, const std::string& prefix,
                                const std::string& source, float* array) const {
   CHECK(use_ != Use::kBorrowing);
+  // Every tensor is checked before the first is written, so that an error changes nothing.
   std::vector<const TensorView*> found;
   for (size_t i = 0; i < specs; ++i) {
     found.push_back(&Fitting(specs_[i], tensors, prefix + specs_[i].name, source));

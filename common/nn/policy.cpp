@@ -36,7 +36,7 @@ struct SizedNetwork {
   std::optional<ActorHead> actor;
 };
 
-// One kind of policy: its parameters, and what is built on them.
+// One kind of policy: its parameters and the networks built on them.
 struct Built {
   Built(const NetworkConfig& network, const ObservationSpec& spec, Precision compute_precision,
         ActorOutput output)
@@ -52,7 +52,8 @@ struct Built {
     return specs;
   }
 
-  // Built when a batch size is first seen, kept for good: an actor uses one or two.
+  // Built when a batch size first occurs and then kept, because an actor uses only one or two
+  // sizes.
   SizedNetwork& ForBatch(int batch) {
     const auto found = networks.find(batch);
     if (found != networks.end()) return found->second;
@@ -63,7 +64,7 @@ struct Built {
   const NetworkPlan encoder;
   const ActorPlan actor;
   const Precision precision;
-  std::shared_ptr<const void> loaded = nullptr;  // whose weights `parameters` borrow
+  std::shared_ptr<const void> loaded = nullptr;  // owns the weights that `parameters` borrow
   ParameterSet parameters;
   std::shared_ptr<Scratchpad> scratchpad;
   std::map<int, SizedNetwork> networks;
@@ -86,7 +87,7 @@ ActorOutput ActorOutputOf(const TensorViews& tensors, int action_size) {
 }
 
 struct Policy::Impl {
-  // `owner` keeps what the views point into.
+  // `owner` keeps the memory of the views alive.
   void Load(const TensorViews& tensors, std::shared_ptr<const void> owner,
             const std::string& source);
 
@@ -131,7 +132,7 @@ void Policy::Impl::Load(const TensorViews& tensors, std::shared_ptr<const void> 
   std::unique_ptr<Built> other;
   if (output != built->actor.output) other = Build(output);
   Built& target = other ? *other : *built;
-  // Reading may throw, so it comes first: the old weights stay.
+  // Reading may throw. It comes first, so that an error leaves the old weights in place.
   std::optional<VectorScale> read = ReadVectorScale(tensors, spec.VectorSize(), source);
   target.parameters.Borrow(tensors, source);
   target.loaded = std::move(owner);

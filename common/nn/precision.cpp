@@ -9,14 +9,14 @@
 namespace shoal::nn {
 namespace {
 
-// Whether this CPU has all instructions of `isa`: oneDNN numbers instruction sets by sets of bits.
-// Sets that are newer than the ones named here contain them.
+// Whether this CPU has all instructions of `isa`. oneDNN represents an instruction set by a set of
+// bits, and newer sets contain those named here.
 bool Has(dnnl::cpu_isa isa) {
   const auto bits = static_cast<unsigned>(isa);
   return (static_cast<unsigned>(dnnl::get_effective_cpu_isa()) & bits) == bits;
 }
 
-// avx512_core without it emulates bf16 products with f32 ones.
+// CPUs with avx512_core alone emulate bf16 products with f32 products.
 bool HasNativeBf16() { return Has(dnnl::cpu_isa::avx512_core_bf16); }
 
 }  // namespace

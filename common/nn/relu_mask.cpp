@@ -11,7 +11,7 @@ SHOAL_CPU_CLONES void MaskFloats(const float* __restrict y, int64_t n, float* __
   for (int64_t i = 0; i < n; ++i) dy[i] = y[i] > 0 ? dy[i] : 0.f;
 }
 
-// A bf16 is above zero exactly if its bits are, read as a signed number.
+// A bf16 is above zero exactly if its bits, read as a signed number, are.
 SHOAL_CPU_CLONES void MaskBf16(const uint16_t* __restrict y, int64_t n, uint16_t* __restrict dy) {
   for (int64_t i = 0; i < n; ++i) dy[i] = int16_t(y[i]) > 0 ? dy[i] : uint16_t(0);
 }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int64_t kUnit = 16;  // floats: a parameter begins at a multiple of it
 
-// First rows of N shares of whole groups, and the number of rows behind them.
+// First row of each of N shares of whole groups, then the number of all rows.
 std::vector<int> FirstRows(int replicas, int rows, int copies) {
   CHECK(replicas > 0 && copies > 0 && rows % copies == 0) << rows << " rows of " << copies;
   const int64_t groups = rows / copies;
@@ -68,6 +68,7 @@ std::span<const Exchange::Offer> Replica::Show() {
   }
   std::vector<Exchange::Offer>& offers = exchange_->offers_[++turn_ % 2];
   offers[size_t(rank_)] = std::exchange(next_, {});
+  // A replica that is measured by itself reads its own offer in place of the others'.
   if (!exchange_->meets_)
     std::fill(offers.begin(), offers.end(), Exchange::Offer(offers[size_t(rank_)]));
   Meet();

@@ -21,7 +21,7 @@ using nlohmann::json;
 
 constexpr uint64_t kLengthBytes = 8;
 constexpr uint64_t kMaxHeaderBytes = 100'000'000;
-constexpr uint64_t kHeaderAlignment = 8;  // data begin there; the header is padded with spaces
+constexpr uint64_t kHeaderAlignment = 8;  // of the data; spaces pad the header
 constexpr const char* kMetadata = "__metadata__";
 
 // Bytes per element; 0 for a type this project does not use.
@@ -33,7 +33,7 @@ uint64_t ElementBytes(const std::string& dtype) {
   return 0;
 }
 
-// The text's JSON value. nlohmann's parser keeps the last of two equal keys; here they are an
+// The text's JSON value. nlohmann's parser keeps the last of two equal keys; here equal keys are an
 // error.
 json ParseHeader(std::string_view text, const std::string& source) {
   std::vector<std::set<std::string>> keys;  // one set per open object
@@ -63,7 +63,7 @@ struct Entry {
   uint64_t begin = 0, end = 0;
 };
 
-// Product of the shape and the element's size; throws where it does not fit 63 bits.
+// Product of the shape and the element's size. Throws Error if the product does not fit 63 bits.
 uint64_t TensorBytes(const std::string& dtype, const std::vector<int64_t>& shape,
                      const std::string& name, const std::string& source) {
   constexpr uint64_t kLimit = uint64_t(std::numeric_limits<int64_t>::max());
@@ -117,7 +117,7 @@ void CheckMetadata(const json& metadata, const std::string& source) {
   if (!strings) throw RuntimeError("{}: __metadata__ is not an object of strings", source);
 }
 
-// Tensors have to fill `data_bytes` from the first to the last byte, without overlap.
+// Requires that tensors fill `data_bytes` from the first to the last byte, without overlap.
 void CheckCover(std::vector<Entry>* entries, uint64_t data_bytes, const std::string& source) {
   std::sort(entries->begin(), entries->end(), [](const Entry& a, const Entry& b) {
     return std::pair(a.begin, a.end) < std::pair(b.begin, b.end);
@@ -135,7 +135,8 @@ void CheckCover(std::vector<Entry>* entries, uint64_t data_bytes, const std::str
   }
 }
 
-// Floats become half as many bytes in the same memory: fresh pages cost more than the rounding.
+// Rounds floats to half as many bytes in the same memory: fresh pages would cost more than the
+// rounding.
 void RoundInPlace(std::vector<uint8_t>* data) {
   constexpr size_t kFloatsAtOnce = 4096;
   uint16_t rounded[kFloatsAtOnce];

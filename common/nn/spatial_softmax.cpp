@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Maps are stored in blocks of channels (nChw16c in oneDNN), the output layout of its convolutions
-// on CPUs with AVX-512: a pixel of sixteen channels is one vector, whose lanes are the channels.
+// Maps are stored in blocks of channels (nChw16c in oneDNN). Convolutions have this output layout
+// on CPUs with AVX-512. A pixel of sixteen channels is one vector with a channel in each lane.
 #include "common/nn/spatial_softmax.h"
 
 #include <bit>
@@ -19,11 +19,11 @@ constexpr int kLanes = 16;
 
 float Coordinate(int at, int side) { return side == 1 ? 0.f : 2 * float(at) / float(side - 1) - 1; }
 
-// exp(x) for x <= 0, to 3e-7 of it; where it would be below 2^-100, 2^-100: a sum of which one term
-// is 1 does not feel it, and no product of it is so small that CPUs take their time.
+// exp(x) for x <= 0, with a relative error of 3e-7. Results below 2^-100 become 2^-100: a sum with
+// a term of 1 does not change, and no product is so small that CPUs become slow.
 [[gnu::always_inline]] inline float ExpOfNegative(float x) {
   constexpr float kLog2E = 1.44269504f, kLeast = -100;
-  constexpr float kRound = 12'582'912;  // 1.5 * 2^23: added, it leaves no bits of a fraction
+  constexpr float kRound = 12'582'912;  // 1.5 * 2^23: adding it removes the fraction
   const float t = x * kLog2E < kLeast ? kLeast : x * kLog2E;
   const float rounded = t + kRound;
   const float f = t - (rounded - kRound);  // in [-1/2, 1/2]
@@ -78,13 +78,13 @@ template <class T>
   }
 }
 
-// Gradients along the coordinates of a block's points, and of both with the points themselves:
-// (lanes).
+// Gradients along the coordinates of a block's points, and the product of both with the points
+// themselves: (lanes).
 struct BlockGradient {
   float across[kLanes], down[kLanes], mean[kLanes];
 };
 
-// dx = s p (g - mean of g), g the gradient along a pixel's coordinates.
+// dx = s p (g - mean of g), where g is the gradient along a pixel's coordinates.
 template <class T>
 [[gnu::always_inline]] inline void PointsOfBlockBackward(const Grid& grid, const T* __restrict x,
                                                          const float* __restrict largest,
@@ -195,7 +195,7 @@ void SpatialSoftmax::BackwardMaps() {
   ParallelFor(images_ * blocks_, [&](int begin, int end) {
     for (int block = begin; block < end; ++block) {
       const int image = block / blocks_, first = block % blocks_ * kLanes;
-      BlockGradient gradient{};  // 0 for the lanes that fill up the last block
+      BlockGradient gradient{};  // 0 for the lanes beyond the last channel
       for (int l = 0; l < kLanes && first + l < channels_; ++l) {
         const int64_t point = (int64_t{image} * channels_ + first + l) * 2;
         const float* y = Values<float>(points_.memory()) + point;

@@ -16,10 +16,10 @@ namespace {
 // 1.5 times the updates of one thread on idle cores, and no difference beside a busy one.
 constexpr std::chrono::microseconds kSpin{200};
 constexpr std::chrono::microseconds kPatientSpin{2'000};
-constexpr int kLooksPerClock = 16;  // reading the clock is dearer than looking
+constexpr int kLooksPerClock = 16;  // reading the clock costs more than looking
 constexpr double kNewest = 0.1;     // weight of the latest run in the mean of losses
 
-// How often the calling thread had to leave its core to another one although it had work.
+// How often the kernel took the core from the calling thread although the thread had work.
 int64_t CoreLosses() {
   rusage usage{};
   getrusage(RUSAGE_THREAD, &usage);
@@ -46,7 +46,7 @@ void Barrier::ArriveAndWait() {
   const bool patient = patient_.load(std::memory_order_relaxed);
   while (patient && Now() < start + kPatientSpin) {
     if (round_.load(std::memory_order_acquire) != round) return;
-    sched_yield();  // to a thread that waits for this core, if there is one after all
+    sched_yield();  // to another thread that waits for this core, if there is one
   }
   while (round_.load(std::memory_order_acquire) == round) round_.wait(round);
 }
@@ -57,6 +57,7 @@ Team::Team(int ranks) : start_(ranks), end_(ranks), losses_of_rank_(size_t(ranks
 }
 
 Team::~Team() {
+  // A round without a body ends the threads.
   body_ = nullptr;
   start_.ArriveAndWait();
   for (std::thread& thread : threads_) thread.join();

@@ -14,13 +14,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Description of a checkpoint without policy.json, read from the run around it.
+// Description of a checkpoint without policy.json, from the run that contains the checkpoint.
 PolicyDescription DescribeByRun(const fs::path& folder, const CheckpointPolicy& policy) {
   const fs::path checkpoints = fs::weakly_canonical(folder).parent_path();
   for (const fs::path& run : {checkpoints.parent_path(), checkpoints.parent_path().parent_path()}) {
     if (!fs::exists(run / kConfigFile)) continue;
     const auto [config, spec] = ReadRunConfig(run);
-    if (spec.Hash() != policy.state.spec_hash) continue;  // another run's
+    if (spec.Hash() != policy.state.spec_hash) continue;  // the checkpoint belongs to another run
     return Describe(config, spec, nn::ActorOutputOf(policy.tensors, spec.action_size));
   }
   throw RuntimeError(
@@ -29,7 +29,7 @@ PolicyDescription DescribeByRun(const fs::path& folder, const CheckpointPolicy& 
       folder.string(), kDescriptionFile);
 }
 
-// Files of different checkpoints put together by hand are each whole.
+// Files of different checkpoints, combined by hand, are each valid by themselves.
 void CheckAgreement(const fs::path& folder, const CheckpointPolicy& policy) {
   const auto& [description, tensors, state] = policy;
   const std::string file = (folder / kDescriptionFile).string();

@@ -18,7 +18,7 @@ nlohmann::ordered_json KeysOf(const NetworkConfig& network) {
   return ToJson(config).at("network");
 }
 
-// None where the text is no description that this version reads.
+// None if the text is not a description that this version reads.
 std::optional<NetworkConfig> NetworkOf(const std::string& description) {
   try {
     return ReadDescription(description, kDescriptionFile).network;

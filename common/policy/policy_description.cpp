@@ -47,7 +47,7 @@ nn::ActorOutput OutputFrom(const std::string& word) {
                      Shortened(word, 40));
 }
 
-// Limits beyond those of any task, so that sizes computed from the spec stay reasonable.
+// Limits far above those of any task, so that sizes computed from the spec stay reasonable.
 constexpr int kMostPixels = 1024, kMostChannels = 256, kMostStack = 256;
 constexpr int kMostNumbers = 1 << 20;
 

@@ -21,7 +21,7 @@ struct shoal_policy {
 
   shoal::policy::TrainedPolicy trained;
   std::vector<shoal::BlockSpec> blocks;                // the observed ones
-  std::vector<shoal::policy::ObservedBlock> observed;  // of the latest call: its memory is kept
+  std::vector<shoal::policy::ObservedBlock> observed;  // of the latest call; memory is reused
 };
 
 namespace shoal::policy {
@@ -32,7 +32,7 @@ std::string& LatestError() {
   return error;
 }
 
-// Not even memory for the message is certain.
+// Drops the message if there is no memory for it.
 shoal_policy_status Fail(shoal_policy_status status, const char* message) noexcept {
   try {
     LatestError() = OneLine(message);

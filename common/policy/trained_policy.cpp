@@ -11,15 +11,15 @@
 namespace shoal::policy {
 namespace {
 
-// A batch is computed in parts of a power of two up to this: the networks that are built, one for
-// each size of a part, are few and small whatever batches are asked for.
+// A batch is computed in parts whose sizes are powers of two up to this. One network is built for
+// each size, so networks are few and small whatever the batches.
 constexpr int kLargestPart = 64;
 
 bool AllFinite(std::span<const float> values) {
   return std::ranges::all_of(values, [](float value) { return std::isfinite(value); });
 }
 
-// The observed blocks, as an error lists them.
+// Names of the observed blocks, for an error.
 std::string ObservedNames(const ObservationSpec& spec) {
   std::string names;
   for (const BlockSpec& block : spec.blocks) {
@@ -34,7 +34,7 @@ TrainedPolicy::TrainedPolicy(const CheckpointPolicy& policy, nn::Precision preci
     : description_(policy.description),
       policy_(description_.network, description_.spec, precision, kLargestPart) {
   policy_.Load(policy.tensors, kPolicyFile);
-  // Builds the network of one observation.
+  // Builds the network of one observation in advance.
   const std::vector<uint8_t> frames(size_t(spec().InputBytes()));
   const std::vector<float> vector(size_t(spec().VectorSize()));
   policy_.Forward(1, frames.data(), vector.data());

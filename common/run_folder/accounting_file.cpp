@@ -92,7 +92,7 @@ RunAccount ReadAccountBefore(const fs::path& run) {
   try {
     return ReadAccount(run);
   } catch (const Error& e) {
-    throw UsageError("{}", e.what());  // a restart would read the same
+    throw UsageError("{}", e.what());  // a usage error, because a restart would read the same file
   }
 }
 

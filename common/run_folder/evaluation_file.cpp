@@ -79,7 +79,7 @@ ordered_json ToJson(const EvaluationFile& file) {
                       {"aggregate", AggregateObject(summary.aggregate)},
                       {"commit", file.commit},
                       {"created", file.created}};
-  // A goal that has to be reached once is another than one to be held until the end.
+  // Goals that must be reached once differ from goals that must be held until the end.
   if (file.end_on_success) object["end_on_success"] = true;
   if (file.failures) {
     ordered_json& failures = object["failures"] = ordered_json::object();
@@ -107,7 +107,7 @@ EvaluationSummary SummaryOf(const ordered_json& evaluation, const std::string& s
   }
   summary.env_steps = members.Count("env_steps");
   summary.wall_seconds = members.NumberIfAny(kWallSeconds).value_or(0);
-  aggregate.At("success_rate");  // null of a task without, but said
+  aggregate.At("success_rate");  // null for a task without success, but always present
   summary.aggregate = {.episodes = members.List("episodes").size(),
                        .success_rate = aggregate.NumberIfAny("success_rate"),
                        .return_mean = aggregate.Number("return_mean"),

@@ -54,11 +54,11 @@ UpdatePage::UpdatePage(const fs::path& run, uint64_t restored) {
   content.done = restored;
   bool replaced = true;
   try {
-    // A complete page appears under its name, or none.
+    // The page is complete whenever its name exists.
     WritePage(path, content);
   } catch (const Error& e) {
     if (!exists) throw;
-    replaced = false;  // a full disk: the page that is there has its room
+    replaced = false;  // the disk is full, but the existing page has its space
     log::Warning("{}; going on in the page that is there", e.what());
   }
   const Descriptor file = OpenRegular(path, O_RDWR);

@@ -15,7 +15,7 @@ using nlohmann::json;
 
 namespace {
 
-// The range of `name` among the blocks that count.
+// The range of `name` among all blocks, or among the observed ones only.
 std::optional<ObservationSpec::Range> Find(const std::vector<BlockSpec>& blocks,
                                            std::string_view name, bool observed_only) {
   int first = 0;
@@ -84,7 +84,7 @@ json ToJson(const ObservationSpec& spec) {
               {"action_size", spec.action_size},
               {"drawn_actions", spec.drawn_actions},
               {"model_fingerprint", spec.model_fingerprint}};
-  // Only where there is one: specs without keep the hash they had before.
+  // Written only if present, so that specs without them keep the hash they had before.
   if (spec.goal_picture) object["goal_picture"] = true;
   if (!spec.environment.empty()) object["environment"] = ParseBoundedJson<json>(spec.environment);
   return object;
@@ -120,6 +120,7 @@ BlockPicker::BlockPicker(const ObservationSpec& spec,
   int first = 0;
   for (const BlockSpec& block : spec.blocks) {
     if (wanted(block)) {
+      // Adjacent blocks are copied as one range.
       if (!ranges_.empty() && ranges_.back().first + ranges_.back().size == first) {
         ranges_.back().size += block.size;
       } else {

@@ -23,7 +23,7 @@ using nlohmann::json;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr int kLeastSide = 8;            // pixels of an image
-constexpr size_t kLongestTaskName = 50;  // of a task, before a prefix
+constexpr size_t kLongestTaskName = 50;  // without a prefix
 constexpr char kLibrary[] = ".so:";
 constexpr char kWorld[] = "environment";  // physics half: the process that runs the environment
 
@@ -218,6 +218,7 @@ void EnvironmentDescription::TakeFindings(const EnvironmentDescription& of) {
 std::string TaskNameOf(const std::string& id) {
   const size_t colon = id.rfind(':');
   std::string name = id.substr(colon == std::string::npos ? 0 : colon + 1);
+  // An environment from a file has the file's stem before its name.
   for (const char* ending : {".py:", kLibrary}) {
     const size_t file = id.rfind(ending);
     if (file == std::string::npos) continue;
@@ -252,7 +253,7 @@ EnvironmentDescription EnvironmentFromJson(const json& object) {
   if (environment.observation.empty()) {
     throw UsageError("environment: the observation has no arrays; expected at least one");
   }
-  TaskOf(environment);  // refuses names and sizes
+  TaskOf(environment);  // refuses bad names and sizes
   return environment;
 }
 

@@ -11,14 +11,14 @@ constexpr double kDistanceThreshold = 0.05;
 
 using Components = std::vector<Component>;
 
-// Three numbers of one kind: x, y, z in the world.
+// Three numbers of one quantity: x, y, z in the world.
 Components Vector(const std::string& prefix, const std::string& unit, const std::string& what) {
   return {{prefix + "x", unit, what + ", x in the world"},
           {prefix + "y", unit, what + ", y in the world"},
           {prefix + "z", unit, what + ", z in the world (up)"}};
 }
 
-// The same as a block whose components begin with its name.
+// The same as a block. The names of its components begin with the block's name.
 Block VectorBlock(const std::string& name, const std::string& unit, const std::string& what) {
   return {name, Vector(name + "_", unit, what)};
 }
@@ -36,8 +36,7 @@ Components FingerVelocities() {
 
 constexpr const char* kGrip = "point between the fingers";
 
-// Velocities are those of one env step: what a thing moves or turns in the 0.04 s of a step at its
-// present speed.
+// Velocities are per env step: the motion in the 0.04 s of a step at the present speed.
 std::vector<Block> ReachObservation() {
   return {VectorBlock("grip", "m", kGrip),
           {"fingers", Fingers(/*held_shut=*/true)},
@@ -58,7 +57,7 @@ std::vector<Block> ObjectObservation(bool fingers_held_shut) {
           {"finger_velocities", FingerVelocities()}};
 }
 
-// Each in [-1, 1]: the gripper is pulled towards 5 cm times the number, and lags behind.
+// Each number is in [-1, 1]. The gripper is pulled towards 5 cm times the number, and lags behind.
 Components Action(bool fingers_held_shut) {
   return {{"dx", "", "moves the gripper along x, 1 = towards 5 cm further", -1, 1},
           {"dy", "", "moves the gripper along y, 1 = towards 5 cm further", -1, 1},

@@ -10,7 +10,7 @@ Component Torque(const std::string& joint) {
   return {joint, "", "torque at the " + joint + "'s joint, 1 = 200 N m", -1, 1};
 }
 
-// Positions but the horizontal one, which nothing depends on, then all velocities.
+// All positions except the horizontal one, on which nothing depends, then all velocities.
 Block Observation() {
   return {"observation",
           {{"torso_z", "m", "height of the torso"},

@@ -22,14 +22,14 @@ bool IsBlockName(std::string_view name) {
          std::ranges::all_of(name, [](char c) { return IsLetter(c) || IsDigit(c) || c == '.'; });
 }
 
-// Whether the configuration's `task` takes the name: run folders are named after it.
+// Whether the configuration's `task` takes the name. Run folders are named after the task.
 bool IsTaskName(std::string_view name) {
   return !name.empty() && name.size() <= kLongestName && (IsLetter(name[0]) || IsDigit(name[0])) &&
          std::ranges::all_of(
              name, [](char c) { return IsLetter(c) || IsDigit(c) || c == '.' || c == '-'; });
 }
 
-// For messages: what would break a line is shown as '?'.
+// Text for messages. Characters that would break a line become '?'.
 std::string Shown(std::string text) {
   std::ranges::replace_if(
       text, [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }, '?');

@@ -43,13 +43,13 @@ void LoadTaskLibrary(const std::string& path) {
 }
 
 void CallEntryPoint(const std::string& path, const EntryPoint& entry_point) {
-  // Without a slash the loader would search the system's folders.
+  // Without a slash, the loader would search the system's folders.
   const std::string file = path.find('/') == std::string::npos ? "./" + path : path;
-  // Everything is resolved at once, so that a library of other sources fails here and by name. It
-  // stays loaded: tasks live as long as the process.
+  // All symbols are resolved at once, so that a library of other sources fails here, with the
+  // symbol's name. The library stays loaded, because tasks live as long as the process.
   void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) throw UsageError("{}: cannot load {}", entry_point.key, dlerror());
-  static std::set<void*> called;  // the loader gives one handle for one file, however it is named
+  static std::set<void*> called;  // the loader returns one handle for one file, whatever its path
   if (!called.insert(library).second) return;
   void* symbol = dlsym(library, entry_point.function);
   if (symbol == nullptr) {

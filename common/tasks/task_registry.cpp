@@ -16,7 +16,7 @@
 namespace shoal::tasks {
 namespace {
 
-// A deque: what is added moves nothing.
+// A deque, so that adding a task does not move the others.
 std::deque<Task>& AllTasks() {
   static std::deque<Task> tasks = [] {
     std::deque<Task> all;

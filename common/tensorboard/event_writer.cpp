@@ -22,7 +22,7 @@ namespace shoal::tensorboard {
 namespace {
 
 std::string FileName() {
-  // Tells apart the files that one process makes within one second.
+  // Distinguishes the files that one process makes within one second.
   static std::atomic<int> files{0};
   return fmt::format("events.out.tfevents.{:010}.{}.{}.{}", WallTimeNs() / 1'000'000'000,
                      HostName(), getpid(), files++);
@@ -132,6 +132,7 @@ void EventWriter::EndSession(bool success) {
 }
 
 void EventWriter::Append(const std::string& event) {
+  // Drops events if too many are pending because the file cannot be written.
   if (pending_.size() + event.size() <= kMostPending) AppendTfRecord(event, &pending_);
 }
 

@@ -10,7 +10,7 @@
 namespace shoal::tensorboard {
 namespace {
 
-// Framing of a record (tf_record.h): length and its checksum before, a checksum behind.
+// Frame of a record (tf_record.h): its length and a checksum before, a checksum after.
 constexpr size_t kBefore = 12, kBehind = 4;
 
 void AddSteps(const std::string& file, std::map<std::string, int64_t>* last) {
@@ -22,7 +22,7 @@ void AddSteps(const std::string& file, std::map<std::string, int64_t>* last) {
     proto::Event event;
     if (!event.ParseFromArray(file.data() + at + kBefore, static_cast<int>(length))) return;
     for (const auto& value : event.summary().value()) {
-      if (value.has_metadata()) continue;  // a plugin's
+      if (value.has_metadata()) continue;  // a plugin's value
       const auto [it, added] = last->try_emplace(value.tag(), event.step());
       it->second = std::max(it->second, event.step());
     }

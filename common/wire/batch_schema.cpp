@@ -45,7 +45,7 @@ constexpr ArrayType TypeOf() {
 BatchSchema::BatchSchema(const ObservationSpec& spec, const BatchOptions& options)
     : options_(options) {
   CHECK(options.batch > 0) << options.batch;
-  // The order is that of the bytes on the wire; Hash() covers it.
+  // The arrays are added in the order of their bytes on the wire. Hash() covers this order.
   if (spec.HasPixels()) {
     const std::vector<int> input{spec.InputChannels(), spec.height, spec.width};
     Add("obs_frames", ArrayType::kU8, input);

@@ -25,7 +25,7 @@ struct Header {
   uint64_t magic;
   uint64_t token[2];
   uint64_t learner_session;
-  uint64_t slot_bytes;  // a batch, without what is left to the next page
+  uint64_t slot_bytes;  // of a batch, without the padding to the next page
   uint32_t slots;
 };
 constexpr uint64_t kWordsAt = 64;
@@ -37,7 +37,8 @@ uint64_t SlotOffset(uint64_t batch_bytes, uint32_t slots, uint32_t slot) {
   return Pages(kWordsAt + uint64_t{8} * slots) + slot * Pages(batch_bytes);
 }
 
-// Both sides access it as an atomic: a reader that finds a request there sees the whole batch.
+// Both sides access the word as an atomic. A reader that finds a request in the word sees the whole
+// batch.
 std::atomic_ref<uint64_t> RequestWord(const SharedMemory& memory, uint32_t slot) {
   static_assert(std::atomic_ref<uint64_t>::is_always_lock_free);
   return std::atomic_ref<uint64_t>(reinterpret_cast<uint64_t*>(memory.data() + kWordsAt)[slot]);
@@ -76,6 +77,7 @@ uint8_t* SlotWriter::FreeSlot() {
   const auto free = std::ranges::find(slots_, 0u, &Slot::request);
   if (free == slots_.end()) return nullptr;
   writing_ = static_cast<uint32_t>(free - slots_.begin());
+  // A reader must not take the slot for its former batch while the slot is rewritten.
   RequestWord(memory_, *writing_).store(0, std::memory_order_release);
   return memory_.data() + SlotOffset(batch_bytes_, static_cast<uint32_t>(slots_.size()), *writing_);
 }

@@ -87,7 +87,7 @@ double ResidentMegabytes() {
 int OpenFiles() {
   struct stat status {};
   if (stat("/proc/self/fd", &status) == 0 && status.st_size > 0) {
-    return static_cast<int>(status.st_size);  // as of Linux 6.2
+    return static_cast<int>(status.st_size);  // the number of files since Linux 6.2
   }
   int files = 0;
   std::error_code error;

@@ -14,7 +14,7 @@ uint64_t SizeOfPart(uint64_t total_bytes, uint32_t part) {
   return std::min(kBulkPartBytes, total_bytes - part * kBulkPartBytes);
 }
 
-// It says what a sender can say, and its bytes are what was sent.
+// Whether a sender could make this part, and its bytes are those that were sent.
 bool Whole(const WeightsPart& part) {
   return part.total_bytes > 0 && part.total_bytes <= kMaxWeightsBytes &&
          part.part < WeightsParts(part.total_bytes) &&
@@ -53,7 +53,7 @@ WeightsAssembler::Verdict WeightsAssembler::Add(const WeightsPart& part) {
     bytes_.resize(part.total_bytes);
   }
   if (missing_ == 0) return Verdict::kKnown;
-  // Another size than the version's first part said.
+  // The size differs from that of the version's first part.
   if (part.total_bytes != bytes_.size()) return Verdict::kRefused;
   if (there_[part.part]) return Verdict::kKnown;
   there_[part.part] = true;

@@ -17,7 +17,7 @@ constexpr int kSpreadFrames = 32;
 void AddFrameFigures(const BatchView& batch, const ObservationSpec& spec, int shift_pad,
                      UpdateFigures* figures) {
   if (!spec.HasPixels()) return;
-  const nn::ThreadScope scope(1);  // waking others would take longer
+  const nn::ThreadScope scope(1);  // waking other threads would take longer
   const int frames = std::min(int(batch.reward.size()), kSpreadFrames);
   figures->Set(kFrameSpread,
                nn::MeanFrameSpread(batch.obs_frames.data(), frames, spec.InputBytes()));

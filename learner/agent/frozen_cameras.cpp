@@ -17,7 +17,7 @@ struct View {
   }
 };
 
-// Is a, without a border of `margin`, what b shows at the offset?
+// Whether `a`, without a border of `margin`, equals `b` at the offset.
 bool EqualAt(const View& a, const View& b, int margin, int dy, int dx) {
   const auto bytes = static_cast<size_t>(a.width - 2 * margin);
   for (int plane = 0; plane < a.planes; ++plane) {

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view kMoments = "observation.moments";
 
-// Whether a tensor of a checkpoint's learner.safetensors belongs to no network.
+// Whether a tensor of learner.safetensors belongs to no network and so keeps its initial value.
 bool IsLeftAlone(std::string_view name) {
   return name.starts_with("adam.") || name.starts_with("agent.") ||
          name.starts_with("temperature.") || name.starts_with("reward.");
@@ -53,7 +53,7 @@ void RefuseMisfit(const std::string& name, const nn::NamedTensor& tensor, const 
   RefuseNonFinite(name, tensor, source);
 }
 
-// A policy's own file has the mean and the variance, but not of how many observations they are.
+// A policy's own file contains mean and variance, but not the number of observations.
 void RefuseStatisticsAlone(const nn::TensorMap& weights, const std::string& source) {
   if (!weights.contains(nn::kObservationMean) || weights.contains(std::string(kMoments))) return;
   throw UsageError(
@@ -62,8 +62,9 @@ void RefuseStatisticsAlone(const nn::TensorMap& weights, const std::string& sour
       source, nn::kObservationMean);
 }
 
-// The tensor that a tensor of the agent starts from; null: its usual initial value. A target starts
-// from its critic, not from the encoder, which both contain.
+// The tensor from which a tensor of the agent starts, or null for the usual initial value. A
+// target's encoder starts from its critic's encoder, if there is one, rather than from the
+// policy's.
 const nn::NamedTensor* SourceOf(const std::string& name, const nn::TensorMap& weights) {
   if (IsLeftAlone(name)) return nullptr;
   const auto find = [&](const std::string& wanted) {

@@ -27,7 +27,7 @@ class ReplicatedAgent final : public Agent {
     }
   }
 
-  // Stages are the first replica's, whose thread is the caller's.
+  // Reports the stages of the first replica, which runs on the caller's thread.
   UpdateOutcome Update(const BatchView& batch, const OnStageEnd& on_stage_end) override {
     std::vector<UpdateOutcome> outcomes(agents_.size());
     exchange_.SetPatient(!team_.crowded());
@@ -46,13 +46,13 @@ class ReplicatedAgent final : public Agent {
     return agents_[0]->AveragedPolicyTensors();
   }
   nn::TensorMap AllTensors() const override { return agents_[0]->AllTensors(); }
-  // The first one refuses bad tensors before any has changed.
+  // The first replica refuses bad tensors before any replica changes.
   void Restore(const nn::TensorMap& tensors, const std::string& source) override {
     for (const auto& agent : agents_) agent->Restore(tensors, source);
   }
 
  private:
-  // By the thread that will run it.
+  // Makes a replica on the thread that will run it.
   std::unique_ptr<Agent> MakeOne(const Config& config, nn::Precision precision, int own,
                                  const MakeReplica& make) {
     std::unique_ptr<Agent> agent;
@@ -61,7 +61,7 @@ class ReplicatedAgent final : public Agent {
       if (rank != own) return;
       try {
         nn::Replica* replica = &replicas_[size_t(rank)];
-        const nn::ThreadScope scope(replica->threads());  // built in the size they run in
+        const nn::ThreadScope scope(replica->threads());  // built for the threads that run it
         agent = make(&engines_.emplace_back(precision, config.learner.batch, replica));
       } catch (...) {
         error = std::current_exception();

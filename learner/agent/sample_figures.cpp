@@ -37,7 +37,7 @@ std::vector<float> GoalDistances(const BatchView& batch, const ObservationSpec& 
 }  // namespace
 
 void AddSampleFigures(const BatchView& batch, const ObservationSpec& spec, UpdateFigures* figures) {
-  if (!batch.continues.empty()) return;  // a rollout
+  if (!batch.continues.empty()) return;  // rollouts have no such figures
   const Summary reward = Summarise(batch.reward);
   figures->Set(kRewardMean, reward.mean);
   figures->Set(kRewardStd, reward.deviation);

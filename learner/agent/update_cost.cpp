@@ -16,7 +16,7 @@ namespace {
 double MultiplyAdds(const nn::LayerPlan& layer) {
   double count = 0;
   for (const nn::ParameterSpec& parameter : layer.Parameters()) {
-    if (parameter.shape.size() < 2) continue;  // a bias, a norm
+    if (parameter.shape.size() < 2) continue;  // biases and norms
     double weights = 1;
     for (const int64_t size : parameter.shape) weights *= double(size);
     count += weights * layer.output.height * layer.output.width;
@@ -36,7 +36,7 @@ double MultiplyAdds(const nn::HeadPlan& head) {
   return count;
 }
 
-// Multiply-adds of an encoder, of one sample.
+// Multiply-adds of an encoder for one sample.
 struct EncoderPasses {
   double forward = 0, backward = 0;
 };
@@ -46,7 +46,8 @@ EncoderPasses PassesOf(const nn::NetworkPlan& encoder) {
   for (const nn::LayerPlan& layer : encoder.layers()) {
     const double count = MultiplyAdds(layer);
     passes.forward += count;
-    // The gradients of its weights and of what it reads; nothing below the pixels wants theirs.
+    // The gradients of the weights and of the input each cost as much as the layer itself. Pixels
+    // need no gradient.
     const bool reads_pixels =
         layer.source != nn::kNoLayer &&
         encoder.layers()[size_t(layer.source)].kind == nn::LayerPlan::Kind::kPixels;
@@ -81,13 +82,13 @@ double OffPolicy(const Config& config, const ObservationSpec& spec, const Encode
 
   double critic_step = next_encoders * encoder.forward + 4 * of_critics + of_actor;
   if (!asymmetric) critic_step += encoder.forward + encoder.backward;
-  // Back through the critics' MLPs to the action, not through their trunk.
+  // The gradient of the action passes through the critics' MLPs, not through their trunk.
   double actor_step = 3 * of_actor + 2 * of_critics - MultiplyAdds(critics.trunk);
-  if (separate) actor_step += encoder.forward;  // the critic's
+  if (separate) actor_step += encoder.forward;  // the critic's encoder
   if (actor_trains) {
     actor_step += encoder.forward + encoder.backward;
   } else {
-    actor_step -= MultiplyAdds(actor.trunk);  // the gradient of features that are the critic's
+    actor_step -= MultiplyAdds(actor.trunk);  // the actor does not train the critic's features
   }
   return config.learner.batch *
          (critic_step + actor_step / std::max(1, config.learner.actor_period));

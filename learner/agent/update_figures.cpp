@@ -13,7 +13,7 @@ std::string Figure::Tag() const {
   return (whole ? "" : "train/") + std::string(known_as);
 }
 
-// A name identifies a figure: a constant of a header may have several addresses.
+// Compares names, because a constant of a header may have several addresses.
 UpdateFigures::Entry* UpdateFigures::Find(const Figure& figure) {
   const auto at = std::ranges::find_if(
       entries_, [&](const Entry& entry) { return entry.figure->name == figure.name; });

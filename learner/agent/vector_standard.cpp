@@ -35,7 +35,7 @@ Transitions VectorStandard::Seen(const Transitions& batch) {
   const auto scale = [this](const Part& part, Array* obs, Array* next_obs) {
     engine_->Standardise(*obs, part.moments, variance_floor_, part.obs);
     *obs = part.obs;
-    if (!*next_obs) return;  // a rollout's minibatch has none
+    if (!*next_obs) return;  // a rollout's minibatch has no next observations
     engine_->Standardise(*next_obs, part.moments, variance_floor_, part.next_obs);
     *next_obs = part.next_obs;
   };

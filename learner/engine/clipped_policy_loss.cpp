@@ -13,7 +13,7 @@ namespace {
 constexpr double kHalfLogTwoPi = 0.91893853320467274;
 constexpr double kEpsilon = 1e-8;
 
-// A of the minibatch, normalised by its sample deviation.
+// Advantages of the minibatch, normalised by their sample deviation if configured.
 std::vector<double> AdvantagesOf(const ClippedPolicyInputs& in) {
   std::vector<double> advantages(in.advantage.begin(), in.advantage.end());
   if (!in.normalise_advantages || in.batch < 2) return advantages;
@@ -36,7 +36,7 @@ double LogProb(const ClippedPolicyInputs& in, size_t b) {
   return sum;
 }
 
-// From dL/dlog pi of one element: z = (u - mean) / sigma,
+// Adds the gradients that follow from dL/dlog pi of one element. With z = (u - mean) / sigma,
 //   dlog pi/dmean = z / sigma,   dlog pi/dlog sigma = z^2 - 1
 void AddLogProbGradient(const ClippedPolicyInputs& in, size_t b, double gradient,
                         const ClippedPolicyGradients& out, std::vector<double>* log_std) {
@@ -49,7 +49,7 @@ void AddLogProbGradient(const ClippedPolicyInputs& in, size_t b, double gradient
   }
 }
 
-// The squared error of one value and its gradient.
+// Returns the squared error of one value and writes its gradient.
 double ValueError(const ClippedPolicyInputs& in, size_t b, float* gradient) {
   const double old = in.old_value[b], moved = double{in.value[b]} - old;
   const bool clipped = in.value_clip > 0 && std::abs(moved) > in.value_clip;

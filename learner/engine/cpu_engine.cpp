@@ -91,6 +91,8 @@ Engine::Outcome CpuEngine::End() {
   CHECK(updating_);
   updating_ = false;
   if (outcome_.finite) return outcome_;
+  // An update with a number that is not finite leaves no trace: its steps are undone in reverse
+  // order.
   std::for_each(taken_.rbegin(), taken_.rend(), [](const Taken& step) {
     step.optimiser->Undo();
     for (nn::Module* module : step.changed) module->Refresh();
@@ -142,6 +144,7 @@ void CpuEngine::Standardise(Array x, Moments moments, float variance_floor, Arra
 }
 
 void CpuEngine::AddToMoments(std::span<const float> vectors, Moments moments) {
+  // An update that will be undone must not move the moments either.
   if (!updating_ || Moves()) learner::AddToMoments(vectors, HostValues(moments));
 }
 
@@ -326,7 +329,7 @@ void CpuEngine::StepTemperature(Number loss, double least, nn::ParameterSet* log
   optimiser->Step();
   taken_.push_back({optimiser, {}});
   float& value = log_temperature->values()[0];
-  value = std::max(value, float(std::log(least)));  // of 0: no bound
+  value = std::max(value, float(std::log(least)));  // log(0) is -inf: no bound
 }
 
 void CpuEngine::AddMean(double own, Number number, bool rounds) {
@@ -335,6 +338,7 @@ void CpuEngine::AddMean(double own, Number number, bool rounds) {
 }
 
 void CpuEngine::RequireFinite(Number number) {
+  // A held update takes no step, so its numbers do not matter.
   if (outcome_.held) return;
   outcome_.finite = outcome_.finite && std::isfinite(Cell(number));
 }
@@ -371,6 +375,8 @@ void CpuEngine::Step(nn::Adam* optimiser, std::span<nn::Module* const> changed, 
     taken_.push_back({optimiser, {changed.begin(), changed.end()}});
     for (nn::Module* module : changed) module->Refresh();
   }
+  // Replicas write disjoint parts of the parameters, so all parts must be complete before any
+  // replica computes with them.
   if (next_use == NextUse::kThisUpdate) replica_->Meet();
 }
 

@@ -64,7 +64,7 @@ ChunkResult RolloutCore::TakeChunk(const TransitionChunk& chunk, uint64_t latest
   if (result.stored > 0) {
     const int i = *sessions_.Find(chunk.actor, chunk.session);
     SessionCounters counters = sessions_.at(i);
-    counters.discarded += result.stored;  // until an update is made of them
+    counters.discarded += result.stored;  // until an update uses them
     sessions_.Update(i, counters);
   }
   counters_.intake.Count(result);
@@ -72,7 +72,7 @@ ChunkResult RolloutCore::TakeChunk(const TransitionChunk& chunk, uint64_t latest
 }
 
 std::vector<Credit> RolloutCore::TakeCredits(bool changed_only) {
-  // Actors are held back by the weights that they await, never by credit.
+  // Missing weights hold actors back, so credit never has to.
   credits_.Refresh(/*may_insert=*/true, std::nullopt);
   return credits_.Take(changed_only);
 }
@@ -130,12 +130,12 @@ void RolloutCore::TakeReset(const uint8_t* record, Lane* lane) {
   lane->missed = 0;
 }
 
-// The actor began another episode without an end of the one before: a faulty one, which is
-// truncated at its last observation.
+// The actor began another episode although the preceding one has no end. The preceding one was
+// faulty, so it is truncated at its last observation.
 void RolloutCore::EndEpisode(Lane* lane) {
   Rollout& rollout = lane->building;
   if (rollout.rows == 0)
-    return;  // its last step belongs to a whole rollout, which bootstraps there
+    return;  // the last step belongs to a complete rollout, which bootstraps there
   rollout.ends.back() = 1.f;
   rollout.continues.back() = 0.f;
   Append<uint8_t>(lane->stack, &rollout.next_frames);
@@ -149,6 +149,7 @@ bool RolloutCore::TakeStep(const uint8_t* record, Lane* lane) {
   }
   const WeightsVersion version{header.weights_session, header.weights_update};
   Rollout& building = lane->building;
+  // A rollout has one version of the weights.
   if (building.rows > 0 && version != building.version) Drop(&building);
   building.version = version;
   AddRow(record, lane);
@@ -211,7 +212,7 @@ bool RolloutCore::TooOld(const Rollout& rollout) const {
          rollout.version.update + versions_ahead_ < awaited_.update;
 }
 
-// An actor that is in step has at most one more than versions_ahead.
+// An actor in step has at most versions_ahead + 1 complete rollouts.
 void RolloutCore::DropOld(Lane* lane) {
   while (!lane->whole.empty() &&
          (TooOld(lane->whole.front()) || lane->whole.size() > versions_ahead_ + 1)) {

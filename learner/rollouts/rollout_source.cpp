@@ -15,7 +15,7 @@
 namespace shoal::learner {
 namespace {
 
-constexpr int kAnyNumber = 3;  // deadlines after which less than half of the rollouts suffice
+constexpr int kAnyNumber = 3;  // deadlines after which fewer than half of the rollouts suffice
 
 int RecordBytes(const RunConfig& run) { return RecordLayout(run.spec).record_bytes(); }
 
@@ -58,7 +58,7 @@ size_t RolloutSource::MaxChunks(int actors) const {
 
 void RolloutSource::OnChunk(const TransitionChunk& chunk) {
   std::unique_ptr<PooledChunk> copy = pool_.Copy(chunk);
-  if (!copy) return;  // it comes again
+  if (!copy) return;  // the actor will send the chunk again
   const MutexLock lock(inbox_mutex_);
   inbox_.push_back(std::move(copy));
   inbox_changed_.NotifyOne();
@@ -132,7 +132,7 @@ bool RolloutSource::Complete(SteadyTime now) {
   const int ready = core_.Ready(), expected = core_.Expected();
   if (ready == 0) return false;
   if (!first_ready_) first_ready_ = now;
-  // An update takes minibatches of learner.batch rows: fewer rows make none.
+  // An update takes minibatches of learner.batch rows, so it needs at least one.
   if (int64_t{ready} * run_.config.ppo.rollout_steps < run_.config.learner.batch) return false;
   if (ready >= expected) return true;
   const std::chrono::duration<double> waited = now - *first_ready_;

@@ -26,6 +26,7 @@ std::optional<BatchPlan> DrawPlan(const PlanOptions& options, Selector* selector
       if (!drawn) return std::nullopt;
       if (relabeller != nullptr) goal = relabeller->DrawGoal(drawn->id, random);
     }
+    // Further copies reuse the shifts of earlier copies.
     const auto before = [&](int shifts) -> const BatchPlan::Element& {
       return plan.elements[static_cast<size_t>(b - shifts)];
     };
@@ -73,8 +74,8 @@ BatchGather::Returns BatchGather::SumRewards(uint64_t first, std::span<const flo
   };
   uint64_t last = first;
   double reward = earned(first), discount = 1;
-  // An episode that success ended may go on under another goal, but nothing of it is stored: then
-  // its last samples have fewer than n steps, and the value after these.
+  // An episode that success ended would have continued under another goal, but no later step is
+  // stored. Its last samples then sum fewer than n rewards and bootstrap after these.
   for (int k = 1; k < n_step_.steps && !terminated(last) && index_.Next(last) != 0; ++k) {
     last = index_.Next(last);
     discount *= n_step_.discount;
@@ -85,7 +86,8 @@ BatchGather::Returns BatchGather::SumRewards(uint64_t first, std::span<const flo
 
 void BatchGather::GatherStack(uint64_t id, Shift shift, uint8_t* out) const {
   const int frame_bytes = ring_.layout().frame_bytes();
-  // Newest frame last: fill from the back, staying on the reset once it is reached.
+  // The newest frame is the last, so the stack is filled from the back. Below the reset, the
+  // reset's frame is repeated.
   for (int k = stack_ - 1; k >= 0; --k) {
     const uint8_t* frame = ring_.layout().Frame(ring_.Record(id)).data();
     ShiftPlanes(frame, channels_, height_, width_, shift, out + k * frame_bytes);

@@ -40,14 +40,15 @@ std::optional<uint64_t> EpisodeIndex::Predecessor(uint32_t actor, uint64_t sessi
   return continues ? std::optional(track.last_id) : std::nullopt;
 }
 
-// A reset comes after its goal, the first step after the reset.
+// Whether the record continues the episode: a reset follows its goal, the first step follows the
+// reset.
 bool EpisodeIndex::Follows(const RecordHeader& header, const Track& last) {
   if (header.kind == RecordKind::kReset) return last.kind == RecordKind::kGoal;
   return last.kind != RecordKind::kGoal && last.index + 1 == header.index;
 }
 
 uint64_t EpisodeIndex::Previous(uint64_t id) const {
-  // A record's predecessor is older; only a damaged file says otherwise.
+  // A predecessor has the lower id, except in a damaged file.
   const uint64_t prev = ring_.Slot(id).prev;
   return prev < id && ring_.Holds(prev) ? prev : 0;
 }
@@ -67,8 +68,8 @@ void EpisodeIndex::Added(uint64_t id) {
 void EpisodeIndex::Forget(uint64_t gone) {
   const size_t slot = Slot(gone);
   if (selector_ != nullptr && needed_by_[slot] > 0) {
-    // The samples that reached back to it begin with one of the steps after it: the next ones, or
-    // any of the episode that it holds the goal of.
+    // Removes the samples that need the lost record. They begin with one of the next `stack` steps
+    // or, with goal pictures, with any later step of the episode.
     uint64_t id = gone;
     const bool to_the_end = options_.goal_pictures;
     for (int k = 0; (to_the_end || k < options_.stack) && next_[Slot(id)] != 0; ++k) {
@@ -84,7 +85,7 @@ void EpisodeIndex::Complete(uint64_t id) {
   const bool terminated = (ring_.Header(id).flags & kTerminated) != 0;
   uint64_t first = id;
   for (int steps = 1; steps <= options_.n_step && first != 0; ++steps) {
-    if (ring_.Header(first).kind != RecordKind::kStep) return;  // the episode has fewer
+    if (ring_.Header(first).kind != RecordKind::kStep) return;  // fewer than n_step steps
     if (steps == options_.n_step || terminated) MakeSampleable(first);
     first = Previous(first);
   }
@@ -95,6 +96,7 @@ void EpisodeIndex::CompleteEpisode(uint64_t last) {
   int steps = 0;
   for (uint64_t first = last; first != 0; first = Previous(first)) {
     if (ring_.Header(first).kind != RecordKind::kStep) return;
+    // A termination ends the sum of rewards, so fewer than n steps suffice.
     if (++steps >= options_.n_step || terminated) MakeSampleable(first);
   }
 }
@@ -112,6 +114,7 @@ void EpisodeIndex::MakeSampleable(uint64_t first) {
 void EpisodeIndex::Follow(uint64_t id) {
   const RecordHeader& header = ring_.Header(id);
   Track& track = tracks_[header.env];
+  // A record without a predecessor begins another episode.
   if (track.open && ring_.Slot(id).prev == 0) Cut(&track);
   track = {.session = ring_.Slot(id).session,
            .last_id = id,

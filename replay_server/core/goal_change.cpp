@@ -19,7 +19,7 @@ GoalChange::GoalChange(const ObservationSpec& spec, tasks::Task task,
   CHECK(achieved->size == task_.goal_size() && (!desired_ || desired_->size == task_.goal_size()));
   achieved_ = *achieved;
   size_t first = 0;
-  for (const BlockSpec& block : spec.blocks) {  // privileged blocks have this order
+  for (const BlockSpec& block : spec.blocks) {  // privileged blocks are packed in this order
     if (std::ranges::find(privileged, block.name) == privileged.end()) continue;
     if (block.name == task_.desired_goal().name) privileged_first_ = first;
     first += size_t(block.size);
@@ -38,7 +38,8 @@ bool GoalChange::Terminated(const uint8_t* record, std::span<const float> goal) 
   const uint8_t flags = RecordLayout::Header(record).flags;
   const bool terminated = (flags & kTerminated) != 0;
   if (!end_on_success_) return terminated;
-  // A robot that fell has fallen under every goal; what only success ended would have gone on.
+  // A fall ends the episode under every goal. An episode that only success ended would have
+  // continued.
   const bool by_the_world = terminated && (flags & kSuccess) == 0;
   return by_the_world || task_.Success(task_.Distance(Achieved(record), goal));
 }

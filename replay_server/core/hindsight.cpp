@@ -27,7 +27,7 @@ uint64_t HindsightRelabeller::DrawGoal(uint64_t id, Random* random) {
   }
   uint64_t first = id;
   if (kind_ == HindsightGoal::kEpisode) {
-    // Back to the oldest step that is there; the reset, which no action led to, gives no goal.
+    // Goes back to the oldest stored step. A reset gives no goal, because no action led to it.
     for (uint64_t step = id; step != 0 && ring_.Header(step).kind == RecordKind::kStep;
          step = index_.Previous(step)) {
       first = step;
@@ -44,7 +44,7 @@ tasks::Task TaskOf(const RunConfig& run) {
 
 namespace {
 
-// The task has goals, and rewards that can be computed for another goal.
+// Requires a task with goals whose rewards can be computed for another goal.
 void CheckTask(const RunConfig& run, const tasks::Task& task) {
   const Config& config = run.config;
   const std::string& kind = config.replay.hindsight;
@@ -75,19 +75,20 @@ void CheckTask(const RunConfig& run, const tasks::Task& task) {
   }
 }
 
-// The ring holds enough ended episodes for the first batch, beside those under way.
+// Requires room for the ended episodes that the first batch needs, besides the unfinished ones.
 void CheckCapacity(const RunConfig& run, const tasks::Task& task) {
   const Config& config = run.config;
   const std::string& kind = config.replay.hindsight;
   const int64_t steps = task.EnvStepsPerEpisode(task.ActionRepeat(config.action_repeat));
-  const int64_t usable = steps - (config.replay.n_step - 1);  // first steps of n within an episode
+  const int64_t usable = steps - (config.replay.n_step - 1);  // steps with n - 1 more after them
   if (usable <= 0) {
     throw UsageError("replay.n_step = {}: an episode of {} has {} steps; expected at most that",
                      config.replay.n_step, task.name(), steps);
   }
-  // Two episodes of every environment are not usable: one that just ended, one under way.
+  // Two episodes of each environment are not usable: the one that just ended and the unfinished
+  // one.
   const int64_t envs = int64_t{config.envs_per_actor} * std::max(1, config.actors);
-  const int64_t beside = run.spec.goal_picture ? 2 : 1;  // records of an episode that are no steps
+  const int64_t beside = run.spec.goal_picture ? 2 : 1;  // records of an episode besides its steps
   const int64_t ended = (config.replay.min_size + usable - 1) / usable;
   int64_t sample_records = ended * (steps + beside);
   // In the worst case each episode succeeds with its first step.

@@ -6,8 +6,8 @@
 namespace shoal::replay {
 namespace {
 
-// Accounts for records that were stored after their session's counters were last written (the
-// writer died between the two). Throws Error when ring and sessions disagree.
+// Counts records whose session counters were not written, because the writer died in between.
+// Throws Error if ring and sessions disagree.
 void CountStored(const Ring& ring, SessionTable* sessions) {
   for (uint64_t id = ring.oldest_id(); id <= ring.last_id(); ++id) {
     const SlotHeader& slot = ring.Slot(id);

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// mmap, or nullptr with errno set.
+// Calls mmap. On failure, returns nullptr and sets errno.
 uint8_t* Map(int fd, uint64_t bytes, Access access) {
   const int protection = access == Access::kReadWrite ? PROT_READ | PROT_WRITE : PROT_READ;
   const int flags = fd < 0 ? MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE : MAP_SHARED;
@@ -28,7 +28,7 @@ uint8_t* Map(int fd, uint64_t bytes, Access access) {
   return data == MAP_FAILED ? nullptr : static_cast<uint8_t*>(data);
 }
 
-// Removes a file that could not be made, then throws.
+// Removes a file that could not be completed, then throws.
 [[noreturn]] void FailNewFile(const fs::path& path, uint64_t bytes, int error) {
   unlink(path.c_str());
   throw RuntimeError("cannot reserve {} bytes for the replay file '{}': {}", bytes, path.string(),
@@ -57,7 +57,7 @@ Mapping Mapping::Anonymous(uint64_t bytes) {
                        std::strerror(errno));
   }
   mapping.size_ = bytes;
-  // Frames are read at random: large pages save most of the address translation.
+  // Frames are read at random, so large pages save most of the address translation.
   madvise(mapping.data_, bytes, MADV_HUGEPAGE);
   return mapping;
 }

@@ -9,7 +9,7 @@
 namespace shoal::replay {
 namespace {
 
-// A longer distance, or one that is no number, counts as this: sums of weights stay exact.
+// Longer distances and NaN count as this, so that sums of weights stay exact.
 constexpr double kFarthest = 10;  // m
 
 }  // namespace
@@ -47,7 +47,7 @@ std::optional<Selection> MovementSelector::Draw(Random* random) {
   return selection;
 }
 
-// On to the first step of which it is known what lies ahead, or the episode's end, and back: each
+// Walks to the first step whose remaining motion is known, or to the episode's end, and back. Each
 // step of an episode is visited once, in whatever order the steps become sampleable.
 uint64_t MovementSelector::MovementFrom(uint64_t id) {
   const bool path = kind_ == MovementKind::kPath;

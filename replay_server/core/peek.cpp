@@ -22,9 +22,9 @@ namespace shoal::replay {
 namespace {
 
 constexpr int kBorder = 2;     // pixels between images
-constexpr int kAttempts = 20;  // while a server overwrites what was drawn
+constexpr int kAttempts = 20;  // while a server overwrites the drawn records
 
-// A batch of its own memory.
+// A batch with its own memory.
 struct Batch {
   Batch(const ObservationSpec& spec, int size)
       : schema(spec, {.batch = size}), memory(schema.total_bytes()) {}
@@ -39,9 +39,9 @@ BatchPlan WithoutShift(BatchPlan plan) {
   return plan;
 }
 
-// The server has not overwritten any record that the plan's elements are made of: the stack before
-// the first step, that step and those after it, and what shows the goal. The oldest of these goes
-// first, but any may be torn.
+// Whether every record that the plan's elements need is still intact: the stack before the first
+// step, that step, the steps after it, and the record that shows the goal. The server overwrites
+// the oldest record first, but any record may be half overwritten.
 bool StillThere(const Ring& ring, const EpisodeIndex& index, const BatchPlan& plan,
                 const RunConfig& run) {
   const auto there = [&ring](uint64_t id) { return ring.Holds(id) && ring.Intact(id); };
@@ -80,15 +80,15 @@ class Painter {
     peek_.rgb.assign(static_cast<size_t>(peek_.width) * peek_.height * 3, 64);
   }
 
-  // `inputs` (B, I, H, W): their newest frames become row `row` of every camera.
+  // Paints the newest frame of each of the `inputs` (B, I, H, W) into row `row` of every camera.
   void PaintRow(std::span<const uint8_t> inputs, int row) {
     PaintFrames(inputs, spec_.stack - 1, row);
   }
-  // Their goal pictures become the last row.
+  // Paints the goal picture of each input into the last row.
   void PaintGoals(std::span<const uint8_t> inputs) { PaintFrames(inputs, spec_.stack, rows_ - 1); }
 
  private:
-  // Frame `k` of each input.
+  // Paints frame `k` of each input.
   void PaintFrames(std::span<const uint8_t> inputs, int k, int row) {
     const auto input_bytes = static_cast<size_t>(spec_.InputBytes());
     const size_t before = static_cast<size_t>(k) * static_cast<size_t>(spec_.FrameBytes());
@@ -100,7 +100,7 @@ class Painter {
       }
     }
   }
-  // `image`: planes_ planes (H, W); grey ones are painted as red = green = blue.
+  // `image`: planes_ planes (H, W). A grey image is painted with red = green = blue.
   void PaintImage(const uint8_t* image, int column, int row) {
     const int left = kBorder + column * (spec_.width + kBorder);
     const int top = kBorder + row * (spec_.height + kBorder);
@@ -116,10 +116,10 @@ class Painter {
 
   const ObservationSpec& spec_;
   Peek& peek_;
-  int cameras_, planes_, rows_;  // rows of a camera
+  int cameras_, planes_, rows_;  // rows_: for each camera
 };
 
-// Elements drawn from a ring, and what they are gathered by.
+// Elements drawn from a ring, and the objects that gather them.
 struct Draw {
   const Ring& ring;
   const EpisodeIndex& index;
@@ -127,7 +127,7 @@ struct Draw {
   const BatchGather& gather;
 };
 
-// One attempt: what `look` makes of a draw, or nothing when the server was faster.
+// One attempt: returns look(draw), or nothing if the server overwrote the draw.
 template <class Look>
 auto TryLook(const RunConfig& run, const std::filesystem::path& file, int batch, const Look& look,
              Random* random) -> std::optional<std::invoke_result_t<Look, const Draw&>> {

@@ -12,7 +12,7 @@
 namespace shoal::replay {
 namespace {
 
-constexpr int kWord = 8;  // bytes that a border is written with
+constexpr int kWord = 8;  // bytes of a border that are written at once
 static_assert(std::endian::native == std::endian::little, "a word's first byte is its lowest");
 
 uint64_t LoadWord(const uint8_t* from) {
@@ -24,19 +24,19 @@ uint64_t LoadWord(const uint8_t* from) {
 // `pixel` in every byte.
 uint64_t Spread(uint8_t pixel) { return pixel * uint64_t{0x0101010101010101}; }
 
-// The first kWord pixels of a row that was moved to the right by `left` of them, 0 < left < kWord.
+// The first kWord pixels of a row that was moved to the right by `left` pixels, 0 < left < kWord.
 uint64_t LeftEnd(const uint8_t* row, int left) {
   const uint64_t border = Spread(row[0]) & (~uint64_t{0} >> (8 * (kWord - left)));
   return LoadWord(row) << (8 * left) | border;
 }
 
-// The last kWord pixels of a row of that width that was moved to the left by `right`.
+// The last kWord pixels of a row of `width` that was moved to the left by `right` pixels.
 uint64_t RightEnd(const uint8_t* row, int width, int right) {
   const uint64_t border = Spread(row[width - 1]) & (~uint64_t{0} << (8 * (kWord - right)));
   return LoadWord(row + width - kWord) >> (8 * right) | border;
 }
 
-// Writes the columns of `rows` rows that no column of `in` was moved to.
+// Fills the columns of `rows` rows to which no column of `in` was moved.
 void FillColumns(const uint8_t* in, int rows, int width, int dx, uint8_t* __restrict out) {
   const int left = std::max(0, -dx), right = std::max(0, dx);
   const bool in_words = std::abs(dx) < kWord && width >= kWord;
@@ -54,7 +54,7 @@ void FillColumns(const uint8_t* in, int rows, int width, int dx, uint8_t* __rest
   }
 }
 
-// Writes what is not in the place of a pixel of `in` of one plane: columns, then whole rows.
+// Fills the border of one plane, to which no pixel of `in` was moved: columns, then whole rows.
 void FillBorder(const uint8_t* in, int height, int width, Shift shift, uint8_t* __restrict out) {
   const int top = std::max(0, -shift.dy), bottom = std::max(0, shift.dy);
   const int rows = height - top - bottom;
@@ -80,8 +80,8 @@ void ShiftPlanes(const uint8_t* in, int planes, int height, int width, Shift shi
   CHECK(planes > 0 && height > 0 && width > 0) << planes << "x" << height << "x" << width;
   CHECK(std::abs(shift.dx) < width && std::abs(shift.dy) < height)
       << "shift " << shift.dx << "," << shift.dy << " of " << height << "x" << width;
-  // In and out are equally wide: every pixel moves equally far in memory, all in one block, after
-  // which the borders are written over what the block took there from neighbouring rows and planes.
+  // In and out are equally wide, so every pixel moves equally far in memory and one block is
+  // copied. The borders then overwrite what came from neighbouring rows and planes.
   const int bytes = planes * height * width, distance = shift.dy * width + shift.dx;
   std::memcpy(out + std::max(0, -distance), in + std::max(0, distance),
               size_t(bytes - std::abs(distance)));

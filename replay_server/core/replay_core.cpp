@@ -73,8 +73,8 @@ PlanOptions PlanOptionsOf(const Config& config) {
 
 void CheckSampling(const RunConfig& run) {
   const Config& config = run.config;
-  // For each environment, the newest n steps are no sample yet; the oldest stack belongs to one
-  // only.
+  // In each environment the newest n steps are not sampleable yet, and the frames of the oldest
+  // stack serve one sample only.
   const int64_t envs = int64_t{config.envs_per_actor} * std::max(1, config.actors);
   const int64_t least =
       config.replay.min_size + envs * (config.replay.n_step + int64_t{run.spec.stack});
@@ -151,6 +151,7 @@ std::optional<DrawnBatch> ReplayCore::TryAnswer(uint8_t* data) {
   const std::optional<SampleRequest> request = requests_.Next(ring_.stored_steps());
   if (!request) return std::nullopt;
   const bool repeated = requests_.Answered(*request);
+  // A repeated request was granted when it was answered first.
   if (!repeated && !limiter_.MaySample(index_.sampleable())) return std::nullopt;
   Random random(StreamKey(static_cast<uint64_t>(run_.config.seed), StreamRole::kReplaySampler,
                           request->request));

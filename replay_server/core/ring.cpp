@@ -17,8 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A new, empty ring. The file gets its name when it is complete, so that a process killed here
-// leaves nothing that the next one has to refuse.
+// Makes a new, empty ring. The file gets its name when it is complete, so a process killed here
+// leaves no file that its successor has to refuse.
 Mapping MakeRing(const ObservationSpec& spec, const RingOptions& options) {
   const RingGeometry geometry(spec, options.capacity);
   const RingHeader header = MakeRingHeader(geometry, spec.Hash(), options.run.c_str());
@@ -55,7 +55,7 @@ void CheckHeader(const Mapping& mapping, const ObservationSpec& spec, const Ring
   }
 }
 
-// A start with the same file fails again: says what to do about it.
+// Adds the remedy to an error, because another start with the same file would fail again.
 void WithRemedy(const std::function<void()>& read) {
   try {
     read();
@@ -118,8 +118,8 @@ uint64_t Ring::Append(uint32_t actor, uint64_t session, uint64_t prev, const uin
   CHECK(prev < id);
   const bool is_step = RecordLayout::Header(record).kind == RecordKind::kStep;
   auto* slot = reinterpret_cast<SlotHeader*>(SlotData(id));
-  // From here until the commit word is set again the slot has no record. The process may be killed
-  // between any two stores, so the compiler must keep their order: hence the fence.
+  // The slot has no record from here until the commit word is set. The process may be killed
+  // between any two stores, so the fence keeps the compiler from reordering them.
   CommitWord(slot).store(0, std::memory_order_relaxed);
   std::atomic_signal_fence(std::memory_order_seq_cst);
   if (id > geometry_.capacity) oldest_id_ = std::max(oldest_id_, id - geometry_.capacity + 1);

@@ -17,7 +17,7 @@ const SlotHeader& SlotAt(const Mapping& mapping, const RingGeometry& geometry, u
                                               slot * geometry.slot_bytes());
 }
 
-// A slot without a whole record is either unused yet or was being written.
+// Only an unused slot, or the slot that was being written, may lack a complete record.
 Error Damaged(const std::string& name, uint64_t slot, const std::string& what) {
   return RuntimeError("replay file '{}' is damaged: slot {} {}", name, slot, what);
 }
@@ -87,7 +87,7 @@ RingExtent ScanRing(const Mapping& mapping, const RingGeometry& geometry, const 
   for (uint64_t slot = 0; slot < capacity; ++slot) {
     if (progress) progress();
     const SlotHeader& header = SlotAt(mapping, geometry, slot);
-    // The one id this slot may hold: the newest not above `last`.
+    // The only id that this slot may hold: the newest one that is not above `last`.
     const uint64_t behind = (last % capacity + capacity - slot) % capacity;
     const uint64_t expected = last > behind ? last - behind : 0;
     if (header.commit == 0) {
@@ -110,7 +110,7 @@ RingExtent ScanLiveRing(const Mapping& mapping, const RingGeometry& geometry) {
   RingExtent extent;
   extent.last_id = NewestId(mapping, geometry);
   if (extent.last_id >= geometry.capacity) {
-    // Leave out the eighth that the writer overwrites next.
+    // Leaves out the eighth of the ring that the writer overwrites next.
     extent.oldest_id = extent.last_id - geometry.capacity + 1 + (geometry.capacity + 7) / 8;
   }
   extent.stored_steps = SlotAt(mapping, geometry, extent.last_id % geometry.capacity).steps;

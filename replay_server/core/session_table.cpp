@@ -33,8 +33,8 @@ SessionCounters FromCopy(const SessionCopy& copy) {
           .duplicates = copy.duplicates};
 }
 
-// The newest valid copy, or nullptr. A session is in use from its first complete copy on, which is
-// copy 1 (version 1); a copy 0 without it means damage.
+// The newest valid copy, or nullptr. A session is in use once its first copy is complete; the first
+// copy is copy 1 (version 1). A copy 0 without copy 1 means damage.
 const SessionCopy* NewestCopy(const StoredSession& stored) {
   const bool valid[2] = {Valid(stored.copies[0]), Valid(stored.copies[1])};
   if (valid[0] && valid[1]) {
@@ -51,7 +51,7 @@ SessionTable::SessionTable(std::span<StoredSession> storage)
   for (const StoredSession& stored : storage) {
     const SessionCopy* copy = NewestCopy(stored);
     if (copy == nullptr) {
-      // Free, or being added when the writer died: then only the first copy was touched.
+      // The place is free, or the writer died while it added the session. Copy 0 is then unwritten.
       if (NeverWritten(stored.copies[0])) break;
       throw UsageError("the replay file's session {} is damaged; {}", size(), kRingRemedy);
     }
@@ -86,9 +86,8 @@ void SessionTable::TakeOver(const FormerServer& former) {
     if (i && at(*i).highest >= counters.highest) continue;
     const uint64_t ours = i ? at(*i).stored() : 0;
     if (!i) i = Add(counters.actor, counters.session);
-    if (!i)
-      return;  // the table is as full as that of the previous server: the next chunk reports it
-    // Records that a learner on policy discarded are gone like the stored ones.
+    if (!i) return;  // the table is full, as the previous server's was; the next chunk reports it
+    // Records that a learner discarded (on policy) are lost like the stored ones.
     const uint64_t former_ones = counters.stored() + counters.discarded;
     if (former_ones > ours) counters.lost += former_ones - ours;
     counters.discarded = 0;

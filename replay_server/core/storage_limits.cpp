@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A file holding one number; nothing when it is missing or says "max".
+// Reads a file with one number. Nothing if the file is missing or contains "max".
 std::optional<uint64_t> ReadNumber(const fs::path& path) {
   std::ifstream in(path);
   uint64_t value = 0;
@@ -30,7 +30,7 @@ std::optional<uint64_t> ReadNumber(const fs::path& path) {
   return value;
 }
 
-// The number after `key` in a file of "key value" lines.
+// Reads the number after `key` in a file of "key value" lines.
 std::optional<uint64_t> ReadKey(const fs::path& path, const std::string& key) {
   std::ifstream in(path);
   std::string line;
@@ -52,7 +52,7 @@ constexpr CgroupFiles kCgroupV2 = {"memory.max", "memory.current", "inactive_fil
 constexpr CgroupFiles kCgroupV1 = {"memory.limit_in_bytes", "memory.usage_in_bytes",
                                    "total_inactive_file"};
 
-// Lowers `room` by what the group leaves.
+// Reduces `room` to what the group leaves.
 void ApplyCgroup(const CgroupFolder& group, MemoryRoom* room) {
   const CgroupFiles& files = group.version == 1 ? kCgroupV1 : kCgroupV2;
   const std::optional<uint64_t> limit = ReadNumber(group.path / files.limit);

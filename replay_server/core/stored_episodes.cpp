@@ -49,7 +49,7 @@ std::optional<std::vector<uint8_t>> CopyEpisode(const Ring& ring,
     std::copy_n(ring.Record(ids[i]), bytes,
                 records.begin() + static_cast<std::ptrdiff_t>(i * bytes));
   }
-  // Looked at after the copy: what is whole now was whole then.
+  // Checked after the copy: a record that is intact now was intact while it was copied.
   const bool whole = std::ranges::all_of(ids, [&](uint64_t id) { return ring.Intact(id); });
   if (!whole) return std::nullopt;
   return records;

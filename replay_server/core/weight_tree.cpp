@@ -8,7 +8,7 @@
 namespace shoal::replay {
 
 void WeightTree::Set(size_t i, uint64_t weight) {
-  const uint64_t change = weight - weights_[i];  // wraps where it shrinks, as the sums do
+  const uint64_t change = weight - weights_[i];  // may wrap around, as the sums do
   weights_[i] = weight;
   total_ += change;
   for (size_t k = i + 1; k < sums_.size(); k += k & -k) sums_[k] += change;
@@ -16,7 +16,7 @@ void WeightTree::Set(size_t i, uint64_t weight) {
 
 size_t WeightTree::Find(uint64_t at) const {
   CHECK(at < total_) << at << " of " << total_;
-  size_t before = 0;  // weights left of the one that is sought, as far as is known
+  size_t before = 0;  // weights known to be left of the sought one
   for (size_t step = std::bit_floor(weights_.size()); step > 0; step /= 2) {
     const size_t k = before + step;
     if (k >= sums_.size() || sums_[k] > at) continue;

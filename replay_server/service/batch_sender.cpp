@@ -14,8 +14,8 @@
 namespace shoal::replay {
 namespace {
 
-constexpr std::chrono::milliseconds kPause{5};  // between tries
-constexpr std::chrono::seconds kIdleWait{60};   // for a batch; then it looks again
+constexpr std::chrono::milliseconds kPause{5};  // between attempts
+constexpr std::chrono::seconds kIdleWait{60};   // for a batch, before the next look
 
 }  // namespace
 
@@ -50,7 +50,7 @@ uint8_t* BatchSender::FreeBuffer() {
 void BatchSender::Send(const DrawnBatch& batch, uint8_t* buffer) {
   const MutexLock lock(mutex_);
   CHECK(!free_.empty());
-  // The sender may have put another buffer behind it since FreeBuffer().
+  // The sender may have freed another buffer since FreeBuffer(), so this one need not be the last.
   const auto it = std::ranges::find(free_, buffer);
   CHECK(it != free_.end());
   free_.erase(it);
@@ -60,6 +60,7 @@ void BatchSender::Send(const DrawnBatch& batch, uint8_t* buffer) {
 
 void BatchSender::Send(const BatchSlot& slot) {
   const MutexLock lock(mutex_);
+  // A repeated request does not queue the same message twice.
   for (const Outgoing& waiting : queue_) {
     const auto* word = std::get_if<BatchSlot>(&waiting);
     if (word != nullptr && word->address == slot.address && word->request == slot.request) return;
@@ -80,6 +81,7 @@ std::optional<BatchSender::Outgoing> BatchSender::TakeNext() {
 void BatchSender::Pause() {
   const MutexLock lock(mutex_);
   const SteadyTime until = Now() + kPause;
+  // The notification of a new batch does not shorten the pause.
   while (!stopping_ && changed_.WaitUntil(mutex_, until)) {
   }
 }
@@ -90,7 +92,7 @@ void BatchSender::Run() {
       const SteadyTime start = Now();
       const bool sent = std::visit([this](const auto& o) { return SendBatch(o); }, *outgoing);
       ++(sent ? sent_ : given_up_);
-      sending_seconds_ = sending_seconds_ + SecondsSince(start);  // this thread alone writes it
+      sending_seconds_ = sending_seconds_ + SecondsSince(start);  // only this thread writes it
       const auto* buffered = std::get_if<BufferedBatch>(&*outgoing);
       if (buffered == nullptr) continue;
       {
@@ -106,8 +108,8 @@ void BatchSender::Run() {
 }
 
 bool BatchSender::WaitForReader(uint64_t session, bool (PartWriter::*has_reader)()) {
-  // The learner's request may come before its reader is matched, and the samples of a
-  // volatile writer without a reader are lost. DDS reports a match in a status, which this polls.
+  // The learner's request may arrive before its reader is matched, and a volatile writer without a
+  // reader loses its samples. DDS reports a match in a status, which this loop polls.
   const SteadyTime deadline = Now() + kReaderDeadline;
   while (!(writer_.*has_reader)()) {
     if (!Wanted(session) || Now() > deadline) return false;

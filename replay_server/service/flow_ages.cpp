@@ -6,7 +6,7 @@
 namespace shoal::replay {
 namespace {
 
-// `from_ns` is what a message says: any integer.
+// `from_ns` comes from a message and may be any integer.
 double Seconds(int64_t from_ns, int64_t to_ns) {
   return 1e-9 * (static_cast<double>(to_ns) - static_cast<double>(from_ns));
 }
@@ -28,7 +28,7 @@ void FlowAges::OnChunk(const TransitionChunk& chunk, int64_t now_ns) {
   for (size_t at = 0; at + size <= chunk.payload.size(); at += size) {
     const RecordHeader& header = RecordLayout::Header(chunk.payload.data() + at);
     store_age_.Add(Seconds(header.time_ns, now_ns));
-    if (header.weights_session == 0) continue;  // a random action is no policy's
+    if (header.weights_session == 0) continue;  // a random action belongs to no policy
     policy_lag_.Add(static_cast<double>(updates_ - std::min(updates_, header.weights_update)));
   }
 }

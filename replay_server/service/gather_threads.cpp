@@ -10,11 +10,11 @@
 namespace shoal::replay {
 namespace {
 
-// Shares of the service's time, which also has records to store. The gap between the two keeps the
-// number still while the rate of batches does not change.
+// Shares of the service's time; the service also stores records. The gap between the two shares
+// keeps the number of threads stable while the rate of batches is constant.
 constexpr double kMuch = 0.5, kEnough = 0.4;
 
-constexpr std::chrono::hours kLong{1};  // a wait that ends by a notification
+constexpr std::chrono::hours kLong{1};  // a wait that a notification ends
 
 }  // namespace
 
@@ -57,7 +57,7 @@ void GatherThreads::Run(int parts, const std::function<void(int part)>& part) {
   }
   TakeParts();
   const MutexLock lock(mutex_);
-  job_ = nullptr;  // a helper that wakes only now has nothing to do
+  job_ = nullptr;  // a helper that wakes up late finds no job
   while (busy_ > 0) changed_.WaitUntil(mutex_, Now() + kLong);
 }
 

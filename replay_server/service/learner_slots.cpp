@@ -29,8 +29,7 @@ void LearnerSlots::OnRequest(const SampleRequest& request) {
   writer_->Release(request.released);
 }
 
-// Slots of a former session are never written again: should its learner still read one, it has the
-// memory to itself.
+// Slots of a former session are never written again, so a learner that still reads one is safe.
 void LearnerSlots::Begin(const SampleRequest& request) {
   session_ = request.learner_session;
   writer_.reset();

@@ -25,8 +25,8 @@ constexpr int kBatchBuffers = 2;    // one being filled, one being sent
 constexpr milliseconds kProgressSpacing{200};
 constexpr std::chrono::seconds kChoiceSpacing{1};
 
-// The most threads with replay.threads = 0. Memory, not cores, bounds how many copy faster: four
-// reach most of it.
+// Upper bound with replay.threads = 0. Memory, not cores, limits how many threads copy faster; four
+// reach most of its bandwidth.
 int MostGatherers() { return std::clamp(UsableCores() / 4, 1, 4); }
 
 }  // namespace
@@ -53,7 +53,8 @@ ReplayService::ReplayService(const std::filesystem::path& folder, const ProcessN
       part_writer_(hub),
       sender_(SpecHash(), core_.batch_schema().total_bytes(), kBatchBuffers, &part_writer_,
               [this] { inbox_.Wake(); }),
-      // One for each batch that the learner may have asked for, one for that which it reads.
+      // One slot for each batch that may be requested, and one for the batch that the learner
+      // reads.
       slots_(SpecHash(), core_.batch_schema().total_bytes(),
              static_cast<uint32_t>(Settings().learner.request_credits) + 1),
       report_(name, core_, inbox_, sender_, slots_, gatherers_),
@@ -126,6 +127,7 @@ void ReplayService::ReportStarting() {
 
 void ReplayService::Turn() {
   const bool inserts_blocked = core_.InsertsBlocked(), samples_blocked = core_.SamplesBlocked();
+  // After an answer another batch may be ready to draw, so this turn does not wait.
   Take(WaitForArrivals(answered_ ? Now() : Now() + (credits_wait_ ? kCreditSpacing : kPoll)));
   AnswerOne();
   const SteadyTime now = Now();
@@ -221,7 +223,7 @@ bool ReplayService::AnswerInBuffer() {
 }
 
 bool ReplayService::AnswerInSlot(SlotWriter& slots) {
-  // The learner may be reading the slot of a batch that it asked for again: it stays as it is.
+  // The learner may still be reading the slot of a batch that it requests again, so the slot stays.
   const std::optional<SampleRequest> again = core_.NextRepeated();
   if (const auto held = again ? slots.Held(again->request) : std::nullopt) {
     core_.AnsweredAgain();

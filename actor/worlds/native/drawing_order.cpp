@@ -11,7 +11,7 @@
 namespace shoal::worlds::native {
 namespace {
 
-constexpr double kBehindAll = 1e10;  // distance of transparent planes
+constexpr double kBehindAll = 1e10;  // distance of transparent planes: behind everything
 
 double DistanceOf(const mjvGeom& geom, const CameraFrame& frame) {
   if (geom.type == mjGEOM_PLANE) return kBehindAll;

@@ -6,7 +6,7 @@
 namespace shoal::worlds::native {
 namespace {
 
-constexpr double kSkyRadius = 0.7;  // of the far plane's distance, as the engine has it
+constexpr double kSkyRadius = 0.7;  // share of the far plane's distance, as in the engine
 
 bool IsEndless(const mjvGeom& geom) {
   return geom.type == mjGEOM_PLANE && geom.size[0] == 0 && geom.size[1] == 0;

@@ -24,17 +24,17 @@ void MakeLayerKey(const mjvScene& scene, const CameraFrame& frame, const View& v
   add({view.width, view.height, scene.nlight});
   for (int i = 0; i < std::min(scene.nlight, mjMAXLIGHT); ++i) {
     const mjvLight& light = scene.lights[i];
-    // attenuation to specular follow each other.
+    // The members from attenuation to specular are contiguous.
     add_words(light.attenuation, sizeof(float) * (3 + 2 + 9));
     add({light.headlight, light.directional, light.castshadow});
-    if (light.headlight) continue;  // where the camera is
+    if (light.headlight) continue;  // its position is the camera's
     add_words(light.pos, sizeof(light.pos));
     add_words(light.dir, sizeof(light.dir));
   }
   for (const int i : fixed) {
     const mjvGeom& geom = scene.geoms[i];
     add({i, geom.type, geom.dataid, geom.texid, geom.texuniform, geom.texcoord});
-    // texrepeat to reflectance follow each other.
+    // The members from texrepeat to reflectance are contiguous.
     add_words(geom.texrepeat, sizeof(float) * (2 + 3 + 3 + 9 + 4 + 4));
   }
 }

@@ -11,10 +11,10 @@ namespace {
 
 constexpr int kMostCells = mjMAXPLANEGRID;
 
-// One axis of a grid: cells of equal width, and one of another at either end.
+// One axis of a grid: cells of equal width, and one cell of width `pad` at either end.
 struct Division {
   int cells;
-  double start, step, pad;  // start: of the second cell
+  double start, step, pad;  // start: where the second cell begins
 };
 
 Division DivideFinite(double half, double spacing) {
@@ -25,7 +25,7 @@ Division DivideFinite(double half, double spacing) {
   return {cells + 2, -half + pad, 2 * limited, pad};
 }
 
-// Wider than what the far plane leaves; the engine moves it with the camera.
+// The grid reaches beyond the far plane. The engine moves it with the camera.
 Division DivideEndless(const mjModel& model, int geom, int axis) {
   const double far = double{model.vis.map.zfar} * model.stat.extent;
   const int material = model.geom_matid[geom];

@@ -28,7 +28,7 @@ namespace shoal::worlds::native {
 namespace {
 
 constexpr float kFromBehind = 0.3f;  // alpha of a plane seen from behind
-// Transparent geoms are blended twice; so many of them are not drawn anew for that.
+// Transparent geoms are blended twice; the colours of this many are kept for the second time.
 constexpr size_t kOversKept = 16;
 
 const Kernels& KernelsOf(InstructionSet set) {
@@ -49,30 +49,30 @@ struct Renderer::State {
   const Kernels& kernels;
   std::vector<TextureLevels> textures;
   std::vector<const Texture*> texture_views;
-  int sky = -1;  // number of its texture
+  int sky = -1;  // index of its texture, -1 = none
   HazeStyle haze;
   PlaneGrids grids;
   TriangleMeshes meshes;
 
-  uint32_t stamp = 1;  // of the lights on grids; 0 = never lit
+  uint32_t stamp = 1;  // stamp of the lights on grids; 0 = never lit
   RayTables rays;
   TileBuffer picture;
-  std::vector<TileBuffer> overs;  // transparent geoms, each alone
+  std::vector<TileBuffer> overs;  // one transparent geom each
   StaticLayers layers;
   bool keep_layers = true;
-  // The sky of the camera's last orientation, once that was seen twice.
+  // The sky of the camera's last orientation, drawn once that orientation has occurred twice.
   std::vector<uint32_t> sky_key, wanted_sky;
   std::vector<int32_t> sky_picture;
 
-  // One frame's.
+  // Values of one frame.
   View view{};
   CameraFrame frame;
   DrawingOrder order;
-  std::vector<TileRect> rects;  // of transparent geoms, in order
+  std::vector<TileRect> rects;  // places of transparent geoms, in drawing order
   std::vector<bool> seen;
   std::vector<LightColour> colours;
   std::vector<Surface> surfaces;
-  std::vector<std::vector<Triangle>> triangles;  // of each mesh among the surfaces
+  std::vector<std::vector<Triangle>> triangles;  // for each mesh among the surfaces
   size_t meshes_used = 0;
   StaticLayers::Key key;
 
@@ -152,8 +152,7 @@ void Renderer::KeepLayers(bool keep) {
 
 void Renderer::State::SetSky() {
   view.sky = sky < 0 ? nullptr : texture_views[static_cast<size_t>(sky)];
-  // The engine turns the sky's cube by 90 degrees about x: (x, z, -y) of the
-  // world.
+  // The engine turns the sky's cube by 90 degrees about x, to (x, z, -y) of the world.
   const Vector3 rows[3] = {{frame.right.x, frame.up.x, frame.forward.x},
                            {frame.right.z, frame.up.z, frame.forward.z},
                            {-frame.right.y, -frame.up.y, -frame.forward.y}};
@@ -165,7 +164,7 @@ void Renderer::State::SetSky() {
 }
 
 void Renderer::State::NextStamp() {
-  CHECK(++stamp != 0) << "2^32 frames of one renderer";  // what was lit once would look lit
+  CHECK(++stamp != 0) << "2^32 frames of one renderer";  // old light would look current
 }
 
 void Renderer::State::Start(const mjvScene& scene, int width, int height) {
@@ -230,7 +229,7 @@ void Renderer::State::ShadeAll(const SceneLights& lights) {
 void Renderer::State::Clear() {
   kernels.clear(view, picture.tiles());
   if (view.sky == nullptr) return;
-  // Only the camera's orientation and the view's size make a sky.
+  // The sky depends only on the camera's orientation and the view's size.
   wanted_sky.clear();
   for (const auto& row : view.sky_axes) {
     for (const float v : row) wanted_sky.push_back(std::bit_cast<uint32_t>(v));
@@ -289,8 +288,7 @@ void Renderer::State::DrawHaze(const mjvScene& scene) {
   }
 }
 
-// `over` keeps the geom's colours and `rect` their place. False: none of it is
-// in view.
+// Writes the geom's colours to `over` and their place to `rect`. False: the geom is not in view.
 bool Renderer::State::ShadeOver(const mjvScene& scene, const SceneLights& lights, int number,
                                 TileBuffer* over, TileRect* rect) {
   const mjvGeom& geom = scene.geoms[number];
@@ -312,7 +310,7 @@ bool Renderer::State::ShadeOver(const mjvScene& scene, const SceneLights& lights
   return true;
 }
 
-// The engine blends twice: front to back, then back to front.
+// Blends twice, as the engine does: front to back, then back to front.
 void Renderer::State::DrawTransparent(const mjvScene& scene, const SceneLights& lights) {
   const size_t count = order.transparent.size();
   overs.resize(std::max(overs.size(), std::min(count, kOversKept)));

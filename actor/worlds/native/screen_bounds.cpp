@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kEndless = std::numeric_limits<double>::infinity();
 
-// Planes through the eye, of all points with x = k z, touch an ellipsoid at the
-// roots k of a k^2 - 2 b k + c. False: everywhere, the ellipsoid reaches behind
+// A plane through the eye consists of all points with x = k z. Such planes touch an ellipsoid at
+// the roots k of a k^2 - 2 b k + c. False: there is no bound, because the ellipsoid reaches behind
 // the eye.
 bool Tangents(double a, double b, double c, double* low, double* high) {
   const double squared = b * b - a * c;
@@ -80,7 +80,7 @@ bool TilesOf(const RayRect& rect, const CameraFrame& frame, const View& view, Ti
   const double columns = 0.5 * view.width / frame.half_width;
   const double rows = 0.5 * view.height / frame.half_height;
   const double top = frame.half_height + frame.centre_y;
-  // A pixel i is covered when its centre i + 1/2 is.
+  // Pixel i is covered if its centre, i + 1/2, is covered.
   const int left =
       clamp(std::ceil((rect.left + frame.half_width) * columns - 0.5 - kMargin), view.width);
   const int right =

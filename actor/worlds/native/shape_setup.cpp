@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kTiny = 1e-12;
 
-// The affine function a . (X, Y, 1) about the shape's origin.
+// The affine function a . (X, Y, 1), relative to the shape's origin.
 Affine MakeAffine(const Shape& shape, Vector3 a) {
   return {static_cast<float>(a.x * shape.x + a.y * shape.y + a.z), static_cast<float>(a.x),
           static_cast<float>(a.y)};
@@ -25,9 +25,9 @@ double AwayFromZero(double value) {
   return value < 0 ? -kTiny : kTiny;
 }
 
-// Points p with |rows * (p - centre)| = 1. With p = ray / w that is
-// g w^2 - 2 h w + |rows ray|^2 = 0, g = |rows centre|^2 - 1, h = rows centre .
-// rows ray. Returns whether the eye is outside.
+// The points p with |rows * (p - centre)| = 1. With p = ray / w, they are the roots of g w^2 - 2 h
+// w + |rows ray|^2, where g = |rows centre|^2 - 1 and h = rows centre . rows ray. Returns whether
+// the eye is outside.
 bool MakeQuadric(const Shape& shape, Vector3 centre, const std::array<Vector3, 3>& rows,
                  Quadric* quadric) {
   double g = -1;
@@ -48,8 +48,7 @@ bool MakeQuadric(const Shape& shape, Vector3 centre, const std::array<Vector3, 3
   const double scale = 1 / g;
   const Vector3 b = scale * h;
   quadric->b = MakeAffine(shape, b);
-  // b^2 - (rows ray)^2 / g as a quadratic form of (X, Y, 1), then about the
-  // origin.
+  // b^2 - (rows ray)^2 / g as a quadratic form of (X, Y, 1), then relative to the origin.
   const double qxx = b.x * b.x - scale * xx, qxy = b.x * b.y - scale * xy;
   const double qxz = b.x * b.z - scale * xz, qyy = b.y * b.y - scale * yy;
   const double qyz = b.y * b.z - scale * yz, qzz = b.z * b.z - scale * zz;
@@ -111,13 +110,13 @@ bool MakeCapsule(const PlacedGeom& geom, const CameraFrame& frame, const View& v
     outside &=
         MakeQuadric(*shape, ends[i], InverseRows(geom, radius, radius, radius), &shape->caps[i]);
   }
-  // Inside the capsule the eye sees no front.
+  // An eye inside the capsule sees no front.
   return outside && !(shape->inside_side && std::fabs(eye) <= half);
 }
 
-// Between the planes at -half and +half along an axis: w >= or <= affine
-// functions, by the side on which the eye is. `faces`: ids of the faces at
-// -half and +half.
+// The part between the planes at -half and +half along an axis. Each plane bounds w from below or
+// from above by an affine function, depending on the eye's side. `faces`: ids of the faces at -half
+// and +half.
 void AddSlab(Vector3 centre, Vector3 axis, double half, const int (&faces)[2], Shape* shape) {
   const double middle = Dot(axis, centre);
   for (int i = 0; i < 2; ++i) {
@@ -171,11 +170,11 @@ bool MakeBox(const PlacedGeom& geom, const CameraFrame& frame, const View& view,
 
 constexpr std::array<int, 2> kQuadEdges[] = {{0, 1}, {1, 3}, {3, 2}, {2, 0}};
 
-// Sizes of 0 are endless.
+// A size of 0 means an endless plane.
 bool MakePlane(const PlacedGeom& geom, const CameraFrame& frame, const View& view, Shape* shape) {
   shape->kind = kPlane;
   const double distance = Dot(geom.axes[2], geom.centre);
-  if (std::fabs(distance) < kTiny) return false;  // edge on
+  if (std::fabs(distance) < kTiny) return false;  // seen edge on
   RayRect rect{-HUGE_VAL, HUGE_VAL, -HUGE_VAL, HUGE_VAL};
   if (geom.size[0] > 0 && geom.size[1] > 0) {
     std::array<Vector3, 4> corners;

@@ -8,7 +8,7 @@
 namespace shoal::worlds::native {
 namespace {
 
-constexpr size_t kMostBytes = 8 << 20;  // of all layers: more would not stay in a core's caches
+constexpr size_t kMostBytes = 8 << 20;  // for all layers; more would not stay in a core's caches
 constexpr size_t kMissesKept = 64;
 
 }  // namespace

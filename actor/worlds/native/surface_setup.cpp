@@ -11,8 +11,8 @@
 namespace shoal::worlds::native {
 namespace {
 
-constexpr double kMostExponent = 128;  // of shininess 1
-// The light on a finer grid is that of each pixel, and costs more.
+constexpr double kMostExponent = 128;  // at shininess 1
+// If a grid is finer, lighting each pixel is cheaper and equally exact.
 constexpr int kMostGridCells = 64 * 64;
 
 void Write(Vector3 v, float* to) {
@@ -27,11 +27,11 @@ void WriteAxes(Vector3 axis, Vector3 centre, double scale, double offset, float*
   to[3] = static_cast<float>(offset - scale * Dot(axis, centre));
 }
 
-// cos of whole and other degrees to 1e-7, by the same steps everywhere.
+// Cosine to 1e-7. The steps are the same on every platform, so the result is, too.
 double CosineOfDegrees(double degrees) {
   const double half = degrees * (3.14159265358979323846 / 360);
   const double s = half * half;
-  // sin(half) by its series; cos = 1 - 2 sin^2(half). half <= pi / 2.
+  // sin(half) by its series, for half <= pi / 2. Then cos = 1 - 2 sin^2(half).
   const double sine =
       half *
       (1 - s / 6 * (1 - s / 20 * (1 - s / 42 * (1 - s / 72 * (1 - s / 110 * (1 - s / 156))))));
@@ -44,7 +44,7 @@ Light MakeLight(const mjvLight& from, const CameraFrame& frame) {
   light.own_pass = from.castshadow;
   const Vector3 direction = Normalized(frame.Direction(FromFloats(from.dir)));
   if (from.headlight) {
-    // The engine puts it where the camera is.
+    // The engine puts a headlight at the camera.
     Write({0, 0, -1}, light.direction);
     light.directional = true;
     return light;
@@ -66,7 +66,7 @@ bool GreyColours(const mjvGeom& geom, std::span<const LightColour> colours) {
          });
 }
 
-// Light on a flat face under directional lights without shine.
+// Lights a flat face under directional lights, without specular reflection.
 void LightFace(const SceneLights& lights, const LightColour* colours, Surface* s) {
   for (size_t c = 0; c < 3; ++c) {
     double limited = 0, sum = s->emission[c];
@@ -93,8 +93,8 @@ void SetMaterial(const mjvGeom& geom, const SurfaceSources& sources, LightColour
   s->specular = geom.specular > 0;
   s->merged_passes = transparent;
   s->exponent = static_cast<float>(double{geom.shininess} * kMostExponent);
-  s->exponent *= 0.5f;  // kernels have the cosine's square
-  // x^e <= exp(e * (x - 1)), which is below 1e-3 from here on: a quarter of a grey level.
+  s->exponent *= 0.5f;  // kernels use the squared cosine
+  // x^e <= exp(e * (x - 1)). Below least_shine the bound is under 1e-3, a quarter of a grey level.
   s->least_shine = std::max(0.0f, 1 - 7 / std::max(s->exponent, 1.0f));
   s->whole_exponent = -1;
   if (s->exponent >= 0 && s->exponent <= kMostExponent) {
@@ -108,8 +108,8 @@ void SetTexture(const mjvGeom& geom, const PlacedGeom& placed, const SurfaceSour
                 Surface* s) {
   if (geom.texid < 0 || static_cast<size_t>(geom.texid) >= sources.textures.size()) return;
   s->texture = sources.textures[static_cast<size_t>(geom.texid)];
-  // The engine's vertices have unit size, but for planes, meshes and height
-  // fields of the model.
+  // Vertices in the engine have unit size, except those of planes, meshes and height fields of the
+  // model.
   const bool in_units = geom.dataid >= 0;
   const auto object_scale = [&](size_t k) {
     return in_units || placed.size[k] <= 0 ? 1 : 1 / placed.size[k];
@@ -131,8 +131,7 @@ void SetTexture(const mjvGeom& geom, const PlacedGeom& placed, const SurfaceSour
     WriteAxes(placed.axes[k], placed.centre, scale * object_scale(k), 0, s->texture_axes[k]);
   }
   if (geom.type == mjGEOM_CAPSULE) {
-    // The caps are half spheres whose own coordinates run from 0 at half -
-    // radius.
+    // The caps are half spheres. Their own coordinates begin with 0 at half - radius.
     const double radius = placed.size[0], half = placed.size[2];
     const double side_scale = (geom.texuniform ? half : 1) / half;
     s->capsule_caps = true;
@@ -142,7 +141,7 @@ void SetTexture(const mjvGeom& geom, const PlacedGeom& placed, const SurfaceSour
   }
 }
 
-// The middle of a face, numbered as shape_setup.cpp does.
+// The middle of a face. Faces are numbered as in shape_setup.cpp.
 Vector3 FacePoint(const mjvGeom& geom, const PlacedGeom& placed, int face) {
   if (geom.type == mjGEOM_PLANE) return placed.centre;
   if (geom.type == mjGEOM_CYLINDER) {
@@ -179,7 +178,7 @@ void SetMesh(const mjvGeom& geom, const PlacedGeom& placed, const Shape& shape,
   for (size_t k = 0; k < 3; ++k) Write(placed.axes[k], s->mesh.axes[k]);
 }
 
-// Normals of spheres and ellipsoids, and of the sides of cylinders and capsules.
+// Sets the normals of spheres and ellipsoids, and of the sides of cylinders and capsules.
 void SetRoundNormals(const mjvGeom& geom, const PlacedGeom& placed, Surface* s) {
   const auto& size = placed.size;
   s->inverse_radius = static_cast<float>(1 / size[0]);

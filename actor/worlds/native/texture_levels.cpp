@@ -24,7 +24,7 @@ struct TexelPair {
   float fraction;
 };
 
-// Texel `i` of `to` falls between the two of `from` texels whose centres
+// Texel `i` of a side of `to` texels is interpolated between the two of `from` texels whose centres
 // surround it.
 TexelPair PairOf(int i, int to, int from) {
   const float at =
@@ -34,8 +34,7 @@ TexelPair PairOf(int i, int to, int from) {
           std::clamp(at - static_cast<float>(first), 0.0f, 1.0f)};
 }
 
-// One face at half its size, as OpenGL's mipmap generation makes it: linear
-// interpolation.
+// Halves one face by linear interpolation, as OpenGL's mipmap generation does.
 void Halve(std::span<const int32_t> from, int width, int height, int half_width, int half_height,
            int32_t* to) {
   for (int y = 0; y < half_height; ++y) {

@@ -29,13 +29,14 @@ void TileBuffer::CopyFrom(const TileBuffer& other) {
 
 namespace {
 
-// Four pixels of a row of a tile: columns 0 and 1, and 4 further on 2 and 3.
+// Four pixels of a row of a tile. Columns 0 and 1 are adjacent; columns 2 and 3 follow 4 numbers
+// later.
 __m128i FourPixels(const int32_t* row) {
   return _mm_unpacklo_epi64(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(row)),
                             _mm_loadl_epi64(reinterpret_cast<const __m128i*>(row + 4)));
 }
 
-// The bytes of two vectors in turn.
+// The bytes of two vectors, alternating.
 struct Interleaved {
   __m128i low, high;
 };
@@ -44,7 +45,7 @@ Interleaved Interleave(__m128i a, __m128i b) {
   return {_mm_unpacklo_epi8(a, b), _mm_unpackhi_epi8(a, b)};
 }
 
-// 16 pixels of one row, from four tiles: a transposition of 16 x 4 bytes.
+// Writes 16 pixels of one row, from four tiles, by a transposition of 16 x 4 bytes.
 void WriteSixteen(const int32_t* row, uint8_t* to, size_t plane) {
   const __m128i a = FourPixels(row), b = FourPixels(row + kTilePixels);
   const __m128i c = FourPixels(row + 2 * kTilePixels), d = FourPixels(row + 3 * kTilePixels);
@@ -62,7 +63,7 @@ void WriteSixteen(const int32_t* row, uint8_t* to, size_t plane) {
   _mm_storeu_si128(reinterpret_cast<__m128i*>(to + 2 * plane), blue);
 }
 
-// Up to 4 pixels of one row of a tile.
+// Writes up to 4 pixels of one row of a tile.
 void WriteFew(const int32_t* row, size_t count, uint8_t* to, size_t plane) {
   const int32_t pixels[4] = {row[0], row[1], row[4], row[5]};
   for (size_t channel = 0; channel < 3; ++channel) {

@@ -12,7 +12,8 @@
 namespace shoal::worlds::native {
 namespace {
 
-// The engine takes the face's normal where a corner's differs by more.
+// If the cosine between a corner's normal and the face's is below this, the engine takes the
+// face's.
 constexpr double kSmooth = 0.8;
 
 Vector3 FaceNormal(const Vector3& a, const Vector3& b, const Vector3& c) {
@@ -24,7 +25,7 @@ void Append(Vector3 v, std::vector<float>* to) {
              {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)});
 }
 
-// A triangle with its face's normal.
+// Adds a triangle that has its face's normal at all corners.
 void AddFlat(const std::array<Vector3, 3>& corners, Vector3 normal, TriangleMesh* mesh) {
   for (const Vector3& corner : corners) {
     Append(corner, &mesh->positions);
@@ -37,7 +38,7 @@ void AddQuad(const std::array<Vector3, 4>& q, Vector3 normal, TriangleMesh* mesh
   AddFlat({q[1], q[2], q[3]}, normal, mesh);
 }
 
-// vertices: three indices for each face, from the mesh's first vertex on.
+// vertices: three indices for each face, relative to the mesh's first vertex.
 TriangleMesh MakeMesh(const mjModel& model, int id, const int* vertices, int faces, bool hull) {
   TriangleMesh mesh;
   const int first = model.mesh_vertadr[id], coords = model.mesh_texcoordadr[id];
@@ -61,7 +62,7 @@ TriangleMesh MakeMesh(const mjModel& model, int id, const int* vertices, int fac
   return mesh;
 }
 
-// A height field's surface, sides and bottom.
+// Surface, sides and bottom of a height field.
 class HeightField {
  public:
   HeightField(const mjModel& model, int id)
@@ -99,7 +100,7 @@ class HeightField {
   }
   Vector3 Bottom(int row, int column) const { return At(row, column, -size_[3]); }
 
-  // Strips of triangles, each with its own normal.
+  // The surface consists of strips of triangles, each with its own normal.
   void AddTop(TriangleMesh* mesh) const {
     const auto add = [mesh](const Vector3& a, const Vector3& b, const Vector3& c) {
       AddFlat({a, b, c}, FaceNormal(a, b, c), mesh);
@@ -169,9 +170,9 @@ bool MakeTriangles(const TriangleMesh& mesh, const PlacedGeom& placed, const Cam
       v[k] = placed.centre + double{p[0]} * placed.axes[0] + double{p[1]} * placed.axes[1] +
              double{p[2]} * placed.axes[2];
     }
-    // A ray is v0 b0 + v1 b1 + v2 b2 times its depth: with the rows of the inverse, b times w is
-    // affine, and w is their sum. Rays with all three above zero meet the triangle; nothing must be
-    // clipped at the near plane.
+    // A ray is (v0 b0 + v1 b1 + v2 b2) times its depth. By the rows of the inverse, each b times w
+    // is affine and w is their sum. A ray with all three b above zero meets the triangle, so
+    // nothing is clipped at the near plane.
     const Vector3 rows[3] = {Cross(v[1], v[2]), Cross(v[2], v[0]), Cross(v[0], v[1])};
     const double determinant = Dot(rows[0], v[0]);
     if (determinant <= 1e-300) continue;  // seen from behind or edge on

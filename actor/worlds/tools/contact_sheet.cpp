@@ -32,7 +32,7 @@ std::vector<std::pair<std::string, std::vector<std::string>>> TasksByWorld() {
   return worlds;
 }
 
-// The tasks, one to a line, then camera and quality.
+// One line for each task, then one with camera and quality.
 std::vector<std::string> Label(const ContactSheetTile& tile) {
   std::vector<std::string> lines = tile.tasks;
   lines.push_back(tile.camera + ", " + tile.quality);
@@ -41,7 +41,7 @@ std::vector<std::string> Label(const ContactSheetTile& tile) {
 
 struct Layout {
   int width = 0, height = 0;
-  int cell_width = 0;             // of a tile with its gap
+  int cell_width = 0;             // one tile with its gap
   std::vector<int> label_height;  // per row
 };
 

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-// Each of the published names is a task of ours and its version.
+// A published name is the name of a Shoal task with this version.
 constexpr std::string_view kVersion = "-v4";
 constexpr const char* kReplayable[] = {"FetchReach-v4", "FetchPush-v4", "FetchSlide-v4",
                                        "FetchPickAndPlace-v4"};
@@ -80,7 +80,7 @@ ReferenceTrajectory ReadReference(const std::filesystem::path& path) {
   trajectory.initial_grip = root.Numbers<3>("initial_gripper_xpos");
   trajectory.desired_goal = root.Numbers<3>("desired_goal");
   trajectory.joint_names = root.Names("joint_names");
-  // The last joint is the object's: seven coordinates, six velocities.
+  // The object's joint is the last one: seven coordinates, six velocities.
   const size_t joints = trajectory.joint_names.size();
   Sizes sizes{static_cast<size_t>(tasks::FindTask(trajectory.task).observation().size()), joints,
               joints};

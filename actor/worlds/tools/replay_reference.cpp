@@ -25,7 +25,7 @@ double SequenceTolerance(const std::string& sequence) {
   return kTolerance;
 }
 
-// Indices in our model of the reference's joints; of a free joint, all of its numbers.
+// Indices of the reference's joints in Shoal's model. A free joint has all of its numbers.
 struct JointOrder {
   std::vector<size_t> qpos, qvel;
 };
@@ -52,7 +52,7 @@ std::vector<double> Pick(const double* values, const std::vector<size_t>& order)
   return picked;
 }
 
-// A run of numbers in the observation.
+// A range of the observation's numbers.
 struct Part {
   const char* quantity;
   const char* unit;
@@ -73,7 +73,7 @@ constexpr Part kObjectParts[] = {{"grip_position", "m", 0, 3, true, false},
                                  {"grip_velocity", "m/step", 20, 3, false, false},
                                  {"finger_velocity", "m/step", 23, 2, false, false}};
 
-// One replay: the world, and the report as it grows.
+// One replay: the world and the report so far.
 class Replay {
  public:
   Replay(const ReferenceTrajectory& reference, FetchWorld* world, ReplayReport* report)
@@ -140,7 +140,7 @@ class Replay {
     }
     const double exact = std::sqrt(sum);
     Compare("distance", "m", true, std::span(&exact, 1), std::span(&expected.distance, 1), step);
-    // Rewards are the goal half's, from goals rounded to float32 as records carry them.
+    // Rewards come from the goal half, for goals rounded to float32 as in records.
     const double distance = sparse_.Distance(achieved, desired);
     const double dense = dense_.Reward(distance);
     Compare("reward_dense", "m", true, std::span(&dense, 1), std::span(&expected.reward_dense, 1),
@@ -172,7 +172,7 @@ int FirstHit(const ReferenceTrajectory& reference) {
   if (reference.task != "FetchSlide") return 0;
   for (size_t i = 0; i < reference.steps.size(); ++i) {
     const std::vector<double>& qvel = reference.steps[i].state.qvel;
-    // The puck's joint is the last: three linear velocities, three angular.
+    // The puck has the last joint: three linear velocities, three angular ones.
     const double* linear = qvel.data() + qvel.size() - 6;
     if (std::hypot(linear[0], linear[1], linear[2]) > kHitSpeed) return static_cast<int>(i) + 1;
   }

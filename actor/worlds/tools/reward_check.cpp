@@ -43,7 +43,7 @@ std::vector<RewardSample> PlaySamples(const Task& task, const RewardCheckRequest
   return samples;
 }
 
-// The formulas as documented, on their own: nothing of common/tasks computes here.
+// Implements the documented formulas independently of common/tasks.
 double FormulaDistance(std::span<const float> achieved, std::span<const float> desired) {
   double sum = 0;
   for (size_t i = 0; i < achieved.size(); ++i) {
@@ -75,8 +75,8 @@ void CheckGoals(const Task& task, const std::vector<RewardSample>& samples, Rewa
   }
 }
 
-// Each step's goal becomes what a later step of its episode (or itself) achieved; all rewards in
-// one call, which is to give what the replay computes one by one.
+// Gives each step the goal that it, or a later step of its episode, achieved. Computes all rewards
+// in one call and compares them with the formula.
 void CheckRelabelled(const Task& task, const std::vector<RewardSample>& samples, int relabels,
                      int64_t seed, RewardCheck* check) {
   Random draw(StreamKey(static_cast<uint64_t>(seed), StreamRole::kReplaySampler));

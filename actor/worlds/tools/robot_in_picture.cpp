@@ -49,7 +49,7 @@ double RobotShare(World* world, const std::string& prefix, const std::string& ca
   RenderContext render(colour);
   render.Attach(world);
   const auto draw = [&] {
-    // Planes rather than interleaved: a permutation of the same numbers, taken apart again below.
+    // The renderer writes planes; they are interleaved below.
     std::vector<uint8_t> planes(static_cast<size_t>(colour.width * colour.height) * 3);
     render.Render(world, {&view, 1}, planes);
     Picture picture{colour.width, colour.height, std::vector<uint8_t>(planes.size())};

@@ -42,7 +42,7 @@ AxisProbe Probe(OpenEnvironment* environment, const Task& task, const DescribeRe
     return played;
   };
   AxisProbe probe{.axis = axis, .command = command, .env_steps = 0, .change = {}};
-  // Both rollouts are cut to the length of the shorter one.
+  // Cuts both rollouts to the length of the shorter one.
   const int still_steps = play(0, request.probe_env_steps);
   probe.env_steps = play(command, still_steps);
   const std::vector<float> moved(environment->numbers().begin(), environment->numbers().end());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a TaskDescription is printed.
+// Prints a TaskDescription.
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -19,7 +19,7 @@ using tasks::Block;
 using tasks::Component;
 using tasks::Task;
 
-// Changes shown to people: the largest ones, and none below this share of the largest.
+// People see the largest changes only, and none below this share of the largest.
 constexpr size_t kShownChanges = 3;
 constexpr double kShownShare = 0.1;
 

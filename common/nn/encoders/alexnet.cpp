@@ -3,14 +3,14 @@
 
 namespace shoal::nn {
 
-// Parameters have torchvision's names behind the prefix: `index` counts the modules of its
-// `features`, where ReLUs and pools count, too.
+// Parameters have torchvision's names behind the prefix. `index` counts the modules of
+// torchvision's `features`, including ReLUs and pools.
 void AddAlexnet(const NetworkConfig& network, const std::string& prefix, NetworkPlan* plan) {
   constexpr const char* kKey = "network.encoder";
   plan->AddPixels(/*pool=*/1, kKey, PixelRange::kUnit);
   constexpr struct {
     int index, filters, kernel, stride, padding;
-    bool pool;  // behind it
+    bool pool;  // whether a pool follows
   } kLayers[] = {{0, 64, 11, 4, 2, true},
                  {3, 192, 5, 1, 2, true},
                  {6, 384, 3, 1, 1, false},

@@ -37,8 +37,8 @@ class ResnetPlan {
                                                .skip = layer.skip});
   }
 
-  // Two 3x3 convolutions and what goes round them: the block's input `source`, or a 1x1 convolution
-  // of it where the map's shape changes. Returns the index of the block's output.
+  // Adds two 3x3 convolutions and their bypass: the block's input `source`, or a 1x1 convolution of
+  // it if the map's shape changes. Returns the index of the block's output.
   int AddBlock(const std::string& name, int filters, int stride, int source) {
     const bool same = stride == 1 && plan_->layers()[size_t(source)].output.channels == filters;
     const int inner =

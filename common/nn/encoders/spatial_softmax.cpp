@@ -6,7 +6,7 @@ namespace shoal::nn {
 namespace {
 
 constexpr int kPool = 2, kFilters = 32, kKernel = 3;
-// Maps are flat at the start; without this factor all points would be near the middle.
+// Maps are flat at first. Without this factor all points would be near the middle.
 constexpr double kSharpness = 10;
 
 }  // namespace

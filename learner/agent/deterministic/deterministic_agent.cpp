@@ -53,7 +53,7 @@ class DeterministicAgent final : public Agent {
   void MoveTargetsAndAverage();
   // The modules that the critic's step changes.
   std::vector<nn::Module*> CriticModules();
-  // Whether the coming update is one in which something of this period moves.
+  // Whether the coming update is one of every `period` updates.
   bool Due(int period) const { return (updates_ + 1) % uint64_t(period) == 0; }
 
   const Config config_;
@@ -70,13 +70,12 @@ class DeterministicAgent final : public Agent {
   AgentState state_;
 
   // Arrays and numbers of an update. Dimensions: b rows of this replica, A actions.
-  const Array target_action_;       // a' (b, A)
-  const Array targets_;             // y (b)
-  std::vector<Array> q_gradients_;  // (b) for each critic
-  std::vector<Array>
-      actors_q_gradients_;       // the same of the actor's loss: of the first critic alone
-  const Array action_gradient_;  // (b, A)
-  const Number rate_factor_;     // of the optimisers
+  const Array target_action_;              // a' (b, A)
+  const Array targets_;                    // y (b)
+  std::vector<Array> q_gradients_;         // (b) for each critic
+  std::vector<Array> actors_q_gradients_;  // (b), of the actor's loss: the first critic's only
+  const Array action_gradient_;            // (b, A)
+  const Number rate_factor_;               // of the optimisers
   const CriticNumbers critic_numbers_;
   const Number critic_squares_, actor_squares_;  // of gradients
   const Number actor_loss_, saturation_;
@@ -188,7 +187,7 @@ void DeterministicAgent::UpdateCritic(const Transitions& batch, const OnStageEnd
   on_stage_end(UpdateStage::kOptimiser);
 }
 
-// The features are still those of obs.
+// The encoder still holds the features of obs.
 void DeterministicAgent::UpdateActor(const Transitions& batch, const OnStageEnd& on_stage_end) {
   const auto [mean, log_std, action] = actor_.Forward(batch.obs_vector);
   critic_.ForwardObservation(batch.obs_vector);

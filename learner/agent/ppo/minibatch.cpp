@@ -8,7 +8,7 @@
 namespace shoal::learner {
 namespace {
 
-// Rows of `width` numbers each, one after another.
+// Gathers rows of `width` numbers.
 template <class T>
 void GatherRows(std::span<const T> from, size_t width, std::span<const int> rows,
                 std::vector<T>* to) {

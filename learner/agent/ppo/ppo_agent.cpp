@@ -21,13 +21,13 @@ namespace shoal::learner {
 namespace {
 
 constexpr double kAdamEpsilon = 1e-5;
-constexpr double kKlMargin = 1.5;  // an update ends beyond so many times target_kl
+constexpr double kKlMargin = 1.5;  // an update ends beyond this multiple of target_kl
 
 // Sums over the minibatches of an update.
 struct Sums {
   double policy = 0, value = 0, approx_kl = 0, clip_fraction = 0, grad_norm = 0;
-  int steps = 0;        // of the optimiser
-  int minibatches = 0;  // looked at
+  int steps = 0;        // optimiser steps
+  int minibatches = 0;  // computed, with or without a step
 };
 
 class PpoAgent final : public Agent {
@@ -44,7 +44,7 @@ class PpoAgent final : public Agent {
   }
 
  private:
-  // A rollout and what is computed of it before the first minibatch.
+  // A rollout, with the values computed before the first minibatch.
   struct Prepared {
     int rows = 0;                  // N
     std::vector<float> reward;     // (N)
@@ -54,15 +54,15 @@ class PpoAgent final : public Agent {
   };
 
   Prepared Prepare(const BatchView& batch);
-  // V of these rows of observations; the other rows of the result stay 0.
+  // V of the observations in `rows`. The other elements of the result are 0.
   std::vector<float> Values(std::span<const uint8_t> frames, std::span<const float> vectors,
                             const std::vector<int>& rows, int count);
-  // Begins an update of the engine with these rows, as the networks see them.
+  // Begins an engine update with these rows, in the form that the networks take.
   Transitions TakeRows(const BatchView& batch, const Prepared& prepared, std::span<const int> rows);
-  // The operations of that update; ends it.
+  // Runs the operations of that update, then ends the update.
   Engine::Outcome LearnFrom(const Transitions& rows, const OnStageEnd& on_stage_end);
   void AddTo(Sums* sums, const Engine::Outcome& outcome) const;
-  // False: not finite.
+  // Returns false if a number is not finite.
   bool Epochs(const BatchView& batch, const Prepared& prepared, const OnStageEnd& on_stage_end,
               Sums* sums);
   void SetFigures(const BatchView& batch, const Prepared& prepared, const Sums& sums,
@@ -79,7 +79,7 @@ class PpoAgent final : public Agent {
   RewardScale rewards_;
   Minibatch minibatch_;
   uint64_t updates_ = 0;
-  uint64_t env_steps_ = 0;  // learned from: the time of schedules
+  uint64_t env_steps_ = 0;  // steps learned from; schedules depend on them
   AgentState state_;
 
   // Arrays and numbers of a minibatch. Dimensions: b rows of this replica, A actions.
@@ -159,7 +159,7 @@ PpoAgent::Prepared PpoAgent::Prepare(const BatchView& batch) {
   std::iota(all.begin(), all.end(), 0);
   prepared.value = Values(batch.obs_frames, batch.obs_vector, all, prepared.rows);
 
-  std::vector<int> ends;  // where the next row is no next observation
+  std::vector<int> ends;  // steps whose next observation is not the next row
   for (int t = 0; t < prepared.rows; ++t) {
     if (batch.continues[size_t(t)] == 0 && batch.bootstrap[size_t(t)] != 0) ends.push_back(t);
   }
@@ -285,7 +285,7 @@ UpdateOutcome PpoAgent::Update(const BatchView& batch, const OnStageEnd& on_stag
   const nn::ThreadScope scope(engine_->modules().threads);
   UpdateOutcome outcome{.figures = {}, .finite = AllFinite(batch)};
   if (!outcome.finite) return outcome;
-  // Minibatches before one that is not finite have changed it all.
+  // Kept for a minibatch that is not finite: earlier minibatches have then changed the parameters.
   const nn::TensorMap former = AllTensors();
   const int rows = int(batch.reward.size());
   engine_->Set(clip_, config_.ppo.clip.At(StepsWith(rows)));

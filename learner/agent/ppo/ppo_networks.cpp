@@ -12,7 +12,7 @@ namespace {
 
 using Use = nn::Module::Use;
 
-// Gains of the last layers: actions start close to their mean 0, values at their scale.
+// Gains of the last layers. The policy's is small, so that initial actions are close to 0.
 constexpr double kPolicyGain = 0.01, kValueGain = 1;
 
 bool Shared(const Config& config) { return config.ppo.networks == "shared"; }
@@ -23,7 +23,7 @@ nn::HeadPlan PlanActorHead(const Config& config, const ObservationSpec& spec) {
                                  Shared(config) ? kValueGain : kPolicyGain);
 }
 
-// The first `rows` rows of a tensor.
+// Keeps the first `rows` rows of a tensor.
 void KeepRows(int64_t rows, nn::NamedTensor* tensor) {
   const auto former = size_t(tensor->shape[0]);
   tensor->data.resize(tensor->data.size() / former * size_t(rows));
@@ -46,7 +46,7 @@ PpoNetworks::Network::Network(const Config& config, const ObservationSpec& spec,
 void PpoNetworks::Network::Forward(Frames frames, Array vector, nn::Statistics statistics) {
   if (encoder) encoder->Forward(frames, statistics);
   head.ForwardObservation(vector);
-  head.ForwardAction({});  // it reads none
+  head.ForwardAction({});  // the head has no action input
 }
 
 void PpoNetworks::Network::Backward(Array gradient) {
@@ -66,6 +66,7 @@ PpoNetworks::PpoNetworks(const Config& config, const ObservationSpec& spec, Engi
       log_std_({{"actor.log_std", {spec.action_size}}}, Use::kTraining) {
   std::fill_n(log_std_.Find("actor.log_std").value(), action_size_,
               float(config.ppo.initial_log_std));
+  // A shared output layer is initialised as a whole, so the policy's rows get their gain here.
   if (Shared(config) && config.network.initialisation == "orthogonal") {
     const nn::Parameter weight = actor_.head.parameters().Find("actor.mlp.output.weight");
     const int64_t policy_weights = action_size_ * weight.shape()[1];
@@ -141,6 +142,7 @@ nn::TensorMap PpoNetworks::PolicyTensors() const {
   if (actor_.encoder) actor_.encoder->parameters().Export(&policy);
   actor_.head.parameters().Export(&policy);
   log_std_.Export(&policy);
+  // The last row of a shared output layer belongs to the value.
   if (!own_value_) {
     KeepRows(action_size_, &policy.at("actor.mlp.output.weight"));
     KeepRows(action_size_, &policy.at("actor.mlp.output.bias"));

@@ -8,17 +8,17 @@
 //   5. target heads follow the critic's                                                (Eq. 9)
 //   6. the averaged policy follows encoder and actor                                  (Eq. 12)
 //
-// 3 and 4 every actor_period updates, 5 every target_period, both from the first update on. An
-// encoder keeps one set of activations, so next_obs goes through it first. The temperature in 1 and
-// 3 is the one before this update. An encoder with batch normalisation takes running statistics in
-// 1, those of the batch in 2 and 3. An actor with an encoder of its own (network.encoders) takes
-// that one's features in 3 and trains it, and the critic's heads stand on features of the critic's
-// encoder as 2 has left it. An asymmetric critic (sac.critic_blocks) has vectors of its own and
-// no encoder; the actor's is trained in 3. Where the encoder is trained, sac.aux joins in (Eq.
-// 27).
+// Steps 3 and 4 run every actor_period updates and step 5 every target_period updates, beginning
+// with the first update. An encoder holds one set of activations, so next_obs passes through it
+// first. Steps 1 and 3 use the temperature from before this update. Batch normalisation uses
+// running statistics in 1 and those of the batch in 2 and 3. With separate encoders
+// (network.encoders), step 3 computes and trains the actor's own encoder, and the critic's heads
+// read features of the critic's encoder as step 2 left it. An asymmetric critic (sac.critic_blocks)
+// has its own vectors and no encoder; step 3 trains the actor's. sac.aux (Eq. 27) belongs to the
+// step that trains the encoder.
 //
-// Nothing between Engine::Begin and End depends on a number that is computed: what moves in an
-// update follows from configuration and counters. 2 and 3 end with gradients and figures of the
+// Nothing between Engine::Begin and End depends on a computed number: configuration and counters
+// decide which parameters an update changes. Steps 2 and 3 end with gradients and figures of the
 // whole batch.
 #include "learner/agent/sac/sac_agent.h"
 
@@ -63,13 +63,13 @@ class SacAgent final : public Agent {
     standard_.ExportTo(&parameters);
     return parameters;
   }
-  // A batch as it was drawn, and as the networks see it.
+  // A batch as drawn, and as the networks see it.
   struct Seen {
     Transitions drawn;
     Transitions batch;
     CriticVectors::Vectors of_critic;
   };
-  // Whether something of this period moves in the coming update.
+  // Whether the coming update is one of every `period` updates.
   bool Due(int period) const { return updates_ % uint64_t(period) == 0; }
   void ForwardBackwardAux(const Seen& seen);
   void ComputeTargets(const Seen& seen, Random* random);
@@ -165,7 +165,7 @@ void SacAgent::UpdateCritic(const Seen& seen, const OnStageEnd& on_stage_end) {
   on_stage_end(UpdateStage::kOptimiser);
 }
 
-// After UpdateCritic.
+// Runs after UpdateCritic.
 void SacAgent::UpdateActor(const Seen& seen, Random* random, const OnStageEnd& on_stage_end) {
   networks_.EncodeForActor(seen.batch.obs_frames);
   const auto [mean, log_std] = networks_.ForwardActor(seen.batch.obs_vector);

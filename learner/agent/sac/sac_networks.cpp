@@ -112,6 +112,7 @@ void SacNetworks::Encode(Frames frames) {
 }
 
 void SacNetworks::EncodeForActor(Frames frames) {
+  // An encoder that the critic trains keeps its features of step 2.
   if (!ActorTrains()) return;
   encoder_->Forward(frames, nn::Statistics::kBatch);
   if (critic_encoder_) critic_encoder_->Forward(frames, nn::Statistics::kRunning);
@@ -162,7 +163,7 @@ void SacNetworks::SetRateFactor(Number factor) {
   }
 }
 
-// The actor's loss uses the critic that this leaves.
+// The actor's loss uses the critic after this step.
 void SacNetworks::StepCritic() {
   engine_->Step(&critic_optimiser_, CriticModules(), NextUse::kThisUpdate);
 }
