@@ -10,7 +10,7 @@ namespace shoal {
 namespace {
 
 // If a replica has fewer rows, work that does not shrink with the rows (moving targets, laying out
-// weights) takes most of a replica's time. Each replica also holds parameters of its own.
+// weights) takes most of a replica's time.
 constexpr int kLeastRows = 16;
 // If a replica has fewer rows, such work takes nearly all of the time. At this number, 16 threads
 // do 1.2 to 1.6 times what 8 do.
