@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // launch/slurm/train.sbatch and `shoal experiment run --slurm` under a Slurm of the test's own:
-// controller, node and authentication on this machine, in a scratch folder.
+// controller, node and authentication on this machine, in a scratch folder. If SHOAL_SLURM_PROGRAMS
+// names a folder, for example bin of an unpacked bundle, train.sbatch starts its programs instead
+// of those of this build.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <array>
 #include <csignal>
+#include <cstdlib>
 #include <thread>
 
 #include "common/base/clock.h"
@@ -107,6 +110,7 @@ class SlurmTest : public testing::Test {
 // Runs as a job; `train` is "shoal train ...".
 void SlurmTest::ExpectTrainsWithActorsThatSrunStarts(const TrainingRun& run,
                                                      const std::vector<std::string>& train) {
+  const char* programs = std::getenv("SHOAL_SLURM_PROGRAMS");
   const fs::path output = folder_.path() / "job";
   std::vector<std::string> command{"sbatch",
                                    "--wait",
@@ -115,7 +119,7 @@ void SlurmTest::ExpectTrainsWithActorsThatSrunStarts(const TrainingRun& run,
                                    "--output=" + output.string(),
                                    "--export=ALL,SHOAL_ADDRESS=127.0.0.1,SHOAL_RUNS_SHARED=false,"
                                    "SHOAL_ACTORS_PER_NODE=2,SHOAL_BIN=" +
-                                       ProgramPath(""),
+                                       (programs ? std::string(programs) : ProgramPath("")),
                                    SourcePath("launch/slurm/train.sbatch")};
   command.insert(command.end(), train.begin() + 2, train.end());  // without "shoal train"
   ASSERT_TRUE(Run(command, seconds(150))) << Said() << Log("job") << Log("slurmd.log");
