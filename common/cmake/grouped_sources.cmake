@@ -3,7 +3,7 @@
 # compiler cache compiles together with others of its target (SHOAL_UNITY). tests/layering checks
 # that their names do not collide, in builds with a cache as well.
 
-# shoal_grouped_sources(TARGET FOLDER SOURCES...): FOLDER is the one that relative sources are in.
+# shoal_grouped_sources(TARGET FOLDER SOURCES...): relative sources are relative to FOLDER.
 function(shoal_grouped_sources target folder)
   set(lines)
   foreach(source ${ARGN})
@@ -34,7 +34,7 @@ function(shoal_grouped_sources_below folder)
   endforeach()
 endfunction()
 
-# Called last, when all targets are there.
+# Called last, after all targets are defined.
 function(shoal_write_grouped_sources)
   shoal_grouped_sources_below(${PROJECT_SOURCE_DIR})
   get_property(lines GLOBAL PROPERTY SHOAL_GROUPED_SOURCES)

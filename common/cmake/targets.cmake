@@ -5,20 +5,21 @@ if(SHOAL_WARNINGS_AS_ERRORS)
   list(APPEND SHOAL_WARNINGS -Werror)
 endif()
 
-# For builds without a compiler cache: sources of a target are compiled in groups, as one each, which takes
-# 0.6 of the time. Every source is complete and compiles alone all the same: builds with a cache see to that.
+# For builds without a compiler cache: compiles sources of a target in groups, which takes 0.6 of the time.
+# Every source must still compile alone, as builds with a cache ensure.
 option(SHOAL_UNITY "Compile sources in groups" OFF)
 set(SHOAL_UNITY_GROUP 8 CACHE STRING "Sources in a group")
 if(SHOAL_UNITY)
   set(CMAKE_UNITY_BUILD ON)
   set(CMAKE_UNITY_BUILD_BATCH_SIZE ${SHOAL_UNITY_GROUP})
-  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)  # which takes an anonymous namespace for a header's
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)  # which warns as if the anonymous namespace were in a header
     list(APPEND SHOAL_WARNINGS -Wno-subobject-linkage)
   endif()
 endif()
 
-# shoal_large_groups(TARGET): for a target that programs link whole. A program that links a part of a
-# library gets whole groups of it, and starts later: such libraries keep groups of SHOAL_UNITY_GROUP.
+# shoal_large_groups(TARGET): for a target that programs link completely. A program that uses a part
+# of a library links whole groups and starts more slowly, so such libraries keep groups of
+# SHOAL_UNITY_GROUP.
 function(shoal_large_groups target)
   if(SHOAL_UNITY_GROUP LESS 32)
     set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE 32)
@@ -29,11 +30,11 @@ function(shoal_warnings target)
   target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:${SHOAL_WARNINGS}>)
 endfunction()
 
-# For builds without a compiler cache, whose entries they would outdate. Every source includes what it
-# uses all the same: builds with a cache see to that.
+# Used in builds without a compiler cache, because they would invalidate its entries. Every source must
+# still include what it uses, as builds with a cache ensure.
 option(SHOAL_PRECOMPILED_HEADERS "Compile the headers that most sources include once" OFF)
 
-# shoal_precompiled(HOLDER HEADERS...): makes them; HOLDER is compiled as those who use them are.
+# shoal_precompiled(HOLDER HEADERS...): precompiles HEADERS; HOLDER has the same options as its users.
 function(shoal_precompiled holder)
   shoal_warnings(${holder})
   if(SHOAL_PRECOMPILED_HEADERS)
@@ -41,7 +42,7 @@ function(shoal_precompiled holder)
   endif()
 endfunction()
 
-# shoal_precompile(NAME HOLDER): its sources use HOLDER's.
+# shoal_precompile(NAME HOLDER): the sources of NAME use the precompiled headers of HOLDER.
 function(shoal_precompile name holder)
   if(SHOAL_PRECOMPILED_HEADERS)
     target_precompile_headers(${name} REUSE_FROM ${holder})
@@ -54,11 +55,11 @@ set(SHOAL_COMMON_HEADERS <algorithm> <chrono> <cmath> <cstdint> <filesystem> <fu
   <optional> <span> <string> <string_view> <utility> <vector>)
 shoal_precompiled(shoal_library_headers ${SHOAL_COMMON_HEADERS})
 
-# Code that starts, watches and reports computes little: where SHOAL_COLD is set, a folder's libraries and
-# programs are compiled for a short build. The headers of CLI11 and nlohmann-json are not precompiled: every
-# source would pay seconds for them, and most do not use them.
+# If SHOAL_COLD is set, a folder's libraries and programs are compiled for a short build: code that starts,
+# watches and reports computes little. The headers of CLI11 and nlohmann-json are not precompiled: they
+# would cost every source seconds, and most sources do not use them.
 set(SHOAL_COLD_OPTIONS $<$<CONFIG:Release>:-O1>)
-if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)  # g++ 12 sees what is not there when it optimises little
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)  # g++ 12 has false warnings at low optimisation
   list(APPEND SHOAL_COLD_OPTIONS -Wno-array-bounds -Wno-maybe-uninitialized -Wno-stringop-overflow)
 endif()
 add_library(shoal_cold_headers OBJECT EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/headers.cpp)
@@ -89,14 +90,14 @@ function(shoal_program name)
   endif()
 endfunction()
 
-# shoal_cold_sources(SOURCES...): the same for some sources of another library.
+# shoal_cold_sources(SOURCES...): the same for single sources of another library.
 function(shoal_cold_sources)
   set_source_files_properties(${ARGN} PROPERTIES
     COMPILE_OPTIONS "${SHOAL_COLD_OPTIONS}" SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
 
-# shoal_hot(SOURCES...): where an unoptimised build, as the sanitizers' are, would spend its tests'
-# time: compiled with SHOAL_HOT_OPTIONS there.
+# shoal_hot(SOURCES...): sources that dominate the time of tests in unoptimised builds, such as those
+# of the sanitizers. There they are compiled with SHOAL_HOT_OPTIONS.
 function(shoal_hot)
   if(SHOAL_HOT_OPTIONS)
     set_source_files_properties(${ARGN} PROPERTIES
@@ -104,8 +105,8 @@ function(shoal_hot)
   endif()
 endfunction()
 
-# shoal_exports(PROGRAM LIBRARIES...): the program has all of these libraries, whether or not it uses
-# it itself, for the shared objects that it loads (docs/own_task.md).
+# shoal_exports(PROGRAM LIBRARIES...): links these libraries completely into the program, for the
+# shared objects that it loads (docs/own_task.md).
 function(shoal_exports program)
   target_link_libraries(${program} PRIVATE ${ARGN})
   foreach(library ${ARGN})

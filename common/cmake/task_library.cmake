@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 # shoal_task_library(NAME FOLDER): NAME.so of FOLDER/goal.cpp and NAME_physics.so of the folder's
 # other sources, which may look inside the engine (docs/own_task.md); NAME_python.so and
-# NAME_python_physics.so, the same for the Python package. FOLDER/model, where there is one, is copied
-# beside them, for WorldOptions::Beside("model/..."). Used by Shoal's own build and, installed,
-# by a user's project; either sets
-#   SHOAL_TASK_INCLUDE_DIR   where Shoal's headers lie
+# NAME_python_physics.so, the same for the Python package. FOLDER/model, if it exists, is copied next
+# to them, for WorldOptions::Beside("model/..."). Used by Shoal's own build and, installed, by a
+# user's project. Both set
+#   SHOAL_TASK_INCLUDE_DIR   folder of Shoal's headers
 #   MUJOCO_INCLUDE_DIR, MUJOCO_LIBRARY
 
 # A task finds the symbols that it uses in the program that loads it. Python hides the symbols of its

@@ -21,8 +21,8 @@ namespace {
 constexpr char kPreset[] = "fetch-reach-drq";
 constexpr int kUpdates = 20;
 constexpr std::chrono::milliseconds kLoopbackTime{1500};
-constexpr double kUpdatesPerSecond = 30;            // whose records loopback must keep up with
-constexpr uint64_t kBytesPerProcess = 150'000'000;  // of a run from pixels, as metrics.jsonl has it
+constexpr double kUpdatesPerSecond = 30;            // loopback must carry the records for these
+constexpr uint64_t kBytesPerProcess = 150'000'000;  // in a run from pixels (metrics.jsonl)
 
 Needs NeedsOf(const Config& config) {
   const ObservationSpec spec =
@@ -30,14 +30,14 @@ Needs NeedsOf(const Config& config) {
   const replay::StorageNeeds replay = replay::StorageNeedsOf({config, spec});
   Needs needs;
   needs.ring_bytes = replay.ring_bytes;
-  // Batches go through memory; every record crosses once.
+  // Batches are passed in shared memory; each record crosses loopback once.
   const Schedule& samples = config.replay.samples_per_insert;
   const double records_per_update =
       config.learner.batch / samples.Mean(0, static_cast<uint64_t>(config.env_steps));
   needs.loopback_rate = kUpdatesPerSecond * records_per_update *
                         static_cast<double>(replay.ring_bytes) /
                         static_cast<double>(config.replay.capacity);
-  // Actors, evaluation actor, learner, replay, coordinator.
+  // One actor per core, evaluation actor, learner, replay server, coordinator.
   needs.process_bytes = kBytesPerProcess * static_cast<uint64_t>(UsableCores() + 4);
   return needs;
 }
@@ -65,7 +65,7 @@ std::vector<CheckLine> CheckMachine(const CheckRequest& request,
   Needs needs;
   const bool preset = look("preset", "presets lie beside the program or in share/shoal", [&] {
     config = LoadPreset(kPreset);
-    config.observation.quality = "native";  // the only one that every machine can draw
+    config.observation.quality = "native";  // the only quality that needs no OpenGL
     needs = NeedsOf(config);
     return CheckLine{"preset", Verdict::kOk, fmt::format("{}: task {}", kPreset, config.task), ""};
   });

@@ -8,7 +8,7 @@
 namespace shoal::launch {
 namespace {
 
-constexpr uint64_t kSession = 1;  // of actor, replay and learner alike: each lives once
+constexpr uint64_t kSession = 1;  // of actor, replay and learner: none of them is restarted
 
 actor::ChunkWindow::Options WindowOptions(const RunConfig& run) {
   const int record_bytes = RecordLayout(run.spec).record_bytes();
@@ -47,7 +47,8 @@ void LocalCollection::Collect(uint64_t env_steps) {
   }
 }
 
-// Sends what there is; a window that stays shut shows in the next TryStep.
+// Sends all chunks that the window allows. If the window stays closed, the next TryStep returns
+// false.
 void LocalCollection::Deliver() {
   window_.Flush();
   for (const Credit& credit : core_.TakeCredits(/*changed_only=*/false)) window_.OnCredit(credit);

@@ -27,9 +27,9 @@ constexpr size_t kChunkBytes = 1'000'000;
 constexpr uint64_t kWindow = 4;  // chunks
 constexpr seconds kMeetingDeadline{15}, kAcknowledgementDeadline{5};
 constexpr milliseconds kPoll{20}, kGreeting{100};
-constexpr seconds kPeerLife{60};  // if it is not stopped before
+constexpr seconds kPeerLife{60};  // unless it is stopped earlier
 
-// The highest number that was heard, handed from a receive thread to one that waits.
+// The highest number received, passed from a receive thread to a waiting thread.
 class HighestHeard {
  public:
   void Hear(uint64_t number) {
@@ -56,8 +56,8 @@ class HighestHeard {
   std::optional<uint64_t> heard_ SHOAL_GUARDED_BY(mutex_);
 };
 
-// Waits until the peer's greeting has come and our writer knows its reader: what is sent before
-// that is lost.
+// Waits until the peer's greeting has arrived and our writer has matched the peer's reader. Chunks
+// sent before the match are lost.
 void Meet(HighestHeard* acknowledged, const link::Writer<TransitionChunk>& publisher,
           ChildProcess* peer) {
   const SteadyTime deadline = Now() + kMeetingDeadline;
@@ -104,7 +104,7 @@ LoopbackRate MeasureLoopback(const TransportConfig& transport, milliseconds dura
   };
   while (Now() - start < duration && !StopRequested()) {
     chunk.first_sequence = sent + 1;
-    if (!publisher.Write(chunk)) continue;  // pressure: try again
+    if (!publisher.Write(chunk)) continue;  // not sent in time: try again
     ++sent;
     if (sent > kWindow) wait_for(sent - kWindow);
   }
@@ -117,7 +117,7 @@ int RunLoopbackPeer(const std::filesystem::path& folder, const TransportConfig& 
   HighestHeard stored;
   stored.Hear(0);
   link::Writer<CreditsMessage> publisher(bus);
-  uint64_t next = 1;  // touched by the receive thread alone
+  uint64_t next = 1;  // used by the receive thread only
   const link::Reader<TransitionChunk> chunks(bus, [&](const TransitionChunk& chunk) {
     if (chunk.first_sequence != next || chunk.payload.size() != kChunkBytes) return;
     stored.Hear(next++);

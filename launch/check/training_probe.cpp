@@ -67,7 +67,7 @@ void CompareRestored(const RunConfig& run, nn::Precision precision, const BatchV
   const learner::Checkpoint checkpoint =
       learner::ReadCheckpoint(folder / CheckpointName(state.updates), state.spec_hash);
   Config other = run.config;
-  other.seed += 1;  // so that what is equal afterwards came from the checkpoint
+  other.seed += 1;  // so that equal tensors can only come from the checkpoint
   const auto restored = learner::MakeAgent(other, run.spec, precision);
   restored->Restore(checkpoint.tensors, checkpoint.folder.string());
   probe->restored = checkpoint.state == state && Same(restored->AllTensors(), agent->AllTensors());

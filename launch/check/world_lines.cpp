@@ -17,9 +17,9 @@
 namespace shoal::launch {
 namespace {
 
-// The arm fills a tenth of the pictures and more; what is left of it in a broken one is noise.
+// The arm covers at least a tenth of a correct picture; a broken one has only noise.
 constexpr double kLeastShare = 0.02;
-constexpr char kRobot[] = "robot0:";  // its bodies' names start so
+constexpr char kRobot[] = "robot0:";  // prefix of its bodies' names
 
 }  // namespace
 

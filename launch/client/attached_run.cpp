@@ -11,7 +11,7 @@
 namespace shoal::launch {
 namespace {
 
-// Says the events that have not been said before.
+// Prints events with numbers above `*said`.
 void SayNew(const RunViewMessage& view, uint64_t* said, Progress* progress) {
   for (const RunEvent& event : view.events) {
     if (event.number <= *said) continue;

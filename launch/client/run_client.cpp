@@ -15,7 +15,7 @@
 namespace shoal::launch {
 namespace {
 
-constexpr std::chrono::milliseconds kPoll{100};  // between looks at stop signals
+constexpr std::chrono::milliseconds kPoll{100};  // interval between checks for stop signals
 constexpr std::chrono::milliseconds kResend{500};
 
 void ThrowIfInterrupted() {
@@ -69,7 +69,7 @@ std::optional<ReplyMessage> RunClient::Ask(const CommandMessage& command) {
   const SteadyTime deadline = Now() + kAnswer;
   SteadyTime next_send{};
   while (Now() < deadline && !StopRequested()) {
-    // Sent again until answered: the coordinator carries a request out once.
+    // Resends are safe: the coordinator executes a request once.
     if (Now() >= next_send && commands_.Matched() > 0 && replies_.Matched() > 0) {
       commands_.Write(command);
       next_send = Now() + kResend;

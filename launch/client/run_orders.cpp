@@ -21,12 +21,11 @@ namespace {
 
 using std::chrono::seconds;
 
-constexpr std::chrono::milliseconds kLookAtSilence{500};  // at the silence
+constexpr std::chrono::milliseconds kLookAtSilence{500};  // interval of liveness checks
 constexpr std::chrono::milliseconds kLookAtFolder{20};
 
-// Looks at views until `done` says so; false: not within `most`, or a stop signal. Throws Error
-// when the coordinator has been silent for kCoordinatorSilence: it died, and no view will ever
-// come.
+// Reads views until `done` returns true. Returns false after `most` or on a stop signal. Throws
+// Error if the coordinator has been silent for kCoordinatorSilence: it is presumed dead.
 bool WatchUntil(RunClient& client, seconds most,
                 const std::function<bool(const RunViewMessage&)>& done) {
   const SteadyTime deadline = Now() + most;
@@ -52,7 +51,7 @@ std::vector<std::string> StatesOfActors(const RunViewMessage& view) {
   return states;
 }
 
-// "replay-0 32, learner-0 32"; empty while some process still uses another value.
+// "replay-0 32, learner-0 32"; empty while any process still uses another value.
 std::string InForce(const RunViewMessage& message, const LiveKey& live, double value) {
   MetricsView view;
   for (const MetricsMessage& process : message.processes) view.OnMessage(process, Now());
@@ -73,13 +72,13 @@ std::string InForce(const RunViewMessage& message, const LiveKey& live, double v
   return text;
 }
 
-// After Ctrl-C: the order was accepted, and the run carries it out without this command.
+// After Ctrl-C: the order was accepted, and the run executes it without this command.
 int NotWaitedFor(const Say& say) {
   say("accepted; not waited for");
   return 0;
 }
 
-// A run that has begun to end carries out nothing that takes time.
+// An ending run does not execute orders that take time.
 bool IsEnding(const RunViewMessage& view) { return view.state != "running"; }
 
 // KEY=VALUE as the coordinator has accepted it: the value is a number.
@@ -98,7 +97,7 @@ std::vector<Setting> SettingsOf(const std::vector<std::string>& assignments) {
   return settings;
 }
 
-// "replay-0 32, learner-0 32" of each setting; empty while some process still uses another value.
+// "replay-0 32, learner-0 32" for each setting; empty while any process still uses another value.
 std::string AllInForce(const RunViewMessage& view, const std::vector<Setting>& settings) {
   std::string text;
   for (const Setting& setting : settings) {
@@ -111,7 +110,7 @@ std::string AllInForce(const RunViewMessage& view, const std::vector<Setting>& s
   return text;
 }
 
-// The newest accepted order to scale in a view, "actors: 2 -> 3", if it came after `ours`; else
+// The newest accepted `scale` order in a view ("actors: 2 -> 3") if it is later than `ours`; else
 // empty.
 std::string LaterScale(const RunViewMessage& view, const std::string& ours) {
   std::string later;
@@ -138,12 +137,12 @@ bool AllActorsReport(const RunViewMessage& view, int actors) {
          });
 }
 
-// Says the events after `*shown`.
+// Prints events with numbers above `*shown`.
 void SayEvents(const RunViewMessage& view, uint64_t* shown, const Say& say) {
   for (const RunEvent& event : view.events) {
     if (event.number <= *shown) continue;
     *shown = event.number;
-    if (event.text.starts_with("command: stop: ")) continue;  // the answer that was said
+    if (event.text.starts_with("command: stop: ")) continue;  // already printed as the reply
     say(event.text);
   }
 }
@@ -193,7 +192,7 @@ int ScaleActors(RunClient& client, int actors, const Say& say) {
 }
 
 int StopRun(RunClient& client, const std::filesystem::path& folder, const Say& say) {
-  // Events of before the order are not its doing.
+  // Earlier events were not caused by this order.
   const RunViewMessage first = client.FirstView();
   SameCoordinator coordinator;
   coordinator.Take(first);
@@ -212,7 +211,7 @@ int StopRun(RunClient& client, const std::filesystem::path& folder, const Say& s
   });
   if (!ended && StopRequested()) return NotWaitedFor(say);
   if (!ended) throw RuntimeError("the run accepted the stop, but has not ended in time");
-  // So that who comes next finds the run free.
+  // Wait for the coordinator to exit, so that a following command finds the run unlocked.
   const SteadyTime deadline = Now() + kLeaves;
   while (!folder.empty() && IsHeld(folder) && Now() < deadline) SleepFor(kLookAtFolder);
   return exit_code;

@@ -14,7 +14,7 @@ namespace {
 
 int Attach(const TargetOptions& options) {
   InstallStopSignals();
-  SuspendWithChildren();  // which it has none of
+  SuspendWithChildren();  // this process has no children and stops alone
   RunConnection connection(ResolveTarget(options));
   Progress progress("");
   return ShowAttached(connection.client(), progress);

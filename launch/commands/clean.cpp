@@ -33,17 +33,17 @@ struct Replay {
   uint64_t bytes = 0;
 };
 
-// Its processes may have outlived its coordinator.
+// Processes of a run can outlive its coordinator.
 bool IsAlive(const fs::path& run) { return IsHeld(run) || AnyMember(run); }
 
-// The replay of a run that was named; empty if it has none.
+// The replay of a run; empty if it has none.
 std::optional<Replay> ReplayOf(const fs::path& run) {
   const uint64_t bytes = SizeOfRun(run).replay;
   if (bytes == 0) return std::nullopt;
   return Replay{run, RunStatusOf(run).status, bytes};
 }
 
-// The replays that nothing will read any more: of finished runs, unless they were asked to be kept.
+// The replays that may be removed: those of finished runs without replay.keep.
 std::vector<Replay> FindReplays(const fs::path& dir) {
   std::vector<Replay> found;
   for (const fs::path& run : ListRuns(dir)) {
@@ -93,7 +93,7 @@ bool Agreed(size_t files, uint64_t bytes) {
   return answer == "y" || answer == "Y" || answer == "yes";
 }
 
-// Holds the run meanwhile, so that it cannot be resumed. False if it runs.
+// Locks the run during removal, so that it cannot be resumed. Returns false if the run is running.
 bool Remove(const Replay& replay) {
   const auto lock = FileLock::Take(replay.run / kRunLockFile);
   if (!lock || AnyMember(replay.run)) return false;

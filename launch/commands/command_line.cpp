@@ -13,10 +13,10 @@
 namespace shoal::launch {
 namespace {
 
-// Checked first: an unknown command has no options that could be wrong.
+// Checked before options, so that the error names the unknown command and not an option.
 void CheckCommand(const CLI::App& app, const std::vector<std::string>& words) {
   const CLI::App* level = &app;
-  std::string before;  // the names above it
+  std::string before;  // names of the parent commands
   for (const std::string& word : words) {
     if (word.starts_with('-')) return;
     std::vector<std::string> names;

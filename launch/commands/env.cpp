@@ -91,7 +91,7 @@ void AddRender(CLI::App& env, Action* chosen) {
 void AddEnvCommand(CLI::App& app, Action* chosen) {
   CLI::App* env = app.add_subcommand("env", "Look at environments.");
   env->require_subcommand(1);
-  env->fallthrough();  // --task-library may stand behind the sub-command's own arguments
+  env->fallthrough();  // --task-library is also accepted after the sub-command's arguments
   env->add_option_function<std::string>(
          "--task-library", [](const std::string& path) { worlds::LoadTasks(path); },
          "Shared object with tasks of one's own (docs/own_task.md)")

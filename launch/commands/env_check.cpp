@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// shoal env check: how Shoal sees a user's environment, and whether it keeps to what it says.
+// shoal env check: shows how Shoal maps a user's environment, and checks its declared spaces.
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
@@ -28,7 +28,7 @@ std::string ArrayText(const tasks::ArraySpace& space) {
 
 std::string GoalText(const tasks::EnvironmentDescription& environment) {
   if (environment.goal) {
-    // The threshold of dense rewards decides success, which no reward shows.
+    // Dense rewards do not show success, which depends on the threshold.
     if (environment.goal->reward == tasks::RewardKind::kDense) {
       return "  OK    hindsight: the rewards are dense, minus the distance; verified\n";
     }

@@ -28,7 +28,7 @@
 namespace shoal::launch {
 namespace {
 
-// The JSON, where it is asked for, then the text for people.
+// Writes the JSON if requested, then the text.
 void Show(const JsonOutput& output, const nlohmann::ordered_json& json, const std::string& text) {
   output.Write(json.dump(2) + "\n");
   std::fputs(text.c_str(), output.text());
@@ -46,11 +46,11 @@ int Describe(const worlds::DescribeRequest& request, const std::string& json) {
   return 0;
 }
 
-// Whose inputs are asked for: a run's, or those that the runs of a preset or of an environment of
-// Python would have.
+// Selects the inputs to describe: those of a run, or those that runs of a preset or of a Python
+// environment would have.
 struct InputsRequest {
   std::string run, run_dir = "runs", preset, environment;
-  std::vector<std::string> set;  // KEY=VALUE, of an environment
+  std::vector<std::string> set;  // KEY=VALUE, for an environment
 };
 
 RunConfig ConfigOf(const InputsRequest& request) {
@@ -126,8 +126,8 @@ void AddList(CLI::App& env, Action* chosen) {
   command->callback([=] { *chosen = [=] { return List(*json); }; });
 }
 
-// Refuses what goes only with a user's environment (`of_environments`) beside a task, and the
-// model of a task beside an environment.
+// Refuses options of a user's environment (`of_environments`) together with a task, and --model
+// together with an environment.
 void CheckOptionsOf(const std::string& name, bool hosted,
                     const std::vector<const CLI::Option*>& of_environments,
                     const CLI::Option* model) {
@@ -154,7 +154,7 @@ void AddDescribe(CLI::App& env, Action* chosen) {
   const auto request = std::make_shared<worlds::DescribeRequest>();
   const auto inputs = std::make_shared<InputsRequest>();
   const auto json = std::make_shared<std::string>();
-  // One of three says what is described, and the options of a task go with a task alone.
+  // The task may be a user's environment; --preset can then name the preset of its runs.
   CLI::Option* task = command->add_option(
       "task", request->task,
       "Task, e.g. FetchReachDense, or environment of yours, e.g. Pendulum-v1 (as for env check)");

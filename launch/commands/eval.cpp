@@ -43,8 +43,8 @@ std::string WithBaselines(const std::string& result, const Baselines& baselines)
   return object.dump(2) + "\n";
 }
 
-// "failed 3: 2 stopped_short, 1 never_touched", the commonest first; empty where nothing failed or
-// the task has no causes (actor/evaluation/failure_cause.h).
+// "failed 3: 2 stopped_short, 1 never_touched", most frequent first; empty if no episode failed or
+// the task has no failure causes (actor/evaluation/failure_cause.h).
 std::string FailuresText(const fs::path& file) {
   const auto object = ParseBoundedJson<nlohmann::ordered_json>(ReadFile(file));
   const auto counts = object.find("failures");
@@ -63,7 +63,7 @@ std::string FailuresText(const fs::path& file) {
   return text.empty() ? "" : fmt::format("failed {}: {}", all, text);
 }
 
-// Its run's configuration says what is played.
+// Finds a checkpoint that belongs to a run, because the run's configuration is needed to play it.
 NamedCheckpoint FindRunCheckpoint(const CheckpointWords& words) {
   NamedCheckpoint named = FindCheckpoint(words);
   if (!named.run.empty()) return named;
@@ -120,7 +120,7 @@ int Evaluate(const EvalOptions& options) {
     output.Write(result);
     return 0;
   }
-  if (!options.task.empty()) {  // played without the run's model file
+  if (!options.task.empty()) {  // evaluated without the run's model file
     played.task = options.task;
     played.model.clear();
   }

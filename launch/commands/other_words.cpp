@@ -81,7 +81,8 @@ bool IsTask(const std::vector<std::string>& words, const std::string& value) {
 
 bool IsName(const std::string& word) { return word.size() > 2 && word.starts_with("--"); }
 
-// The value behind or within the option at `i`, which moves to the option's last word.
+// The value of the option at `*i`, after "=" or in the next word. Moves `*i` to the option's last
+// word.
 std::string ValueOf(const std::vector<std::string>& words, const std::string& name, size_t* i) {
   if (name.size() < words[*i].size()) return words[*i].substr(name.size() + 1);
   if (*i + 1 == words.size() || IsName(words[*i + 1])) {
@@ -113,7 +114,7 @@ std::vector<std::string> KeysAsAssignments(const CLI::App& train,
   return taken;
 }
 
-// The command that the words before the first option name.
+// The (sub-)command named by the leading words.
 const CLI::App& CommandOf(const CLI::App& app, const std::vector<std::string>& words) {
   const CLI::App* command = &app;
   for (const std::string& word : words) {

@@ -24,8 +24,8 @@ void PrintNow(const std::string& line) {
   std::fflush(stdout);
 }
 
-// The words after `set` and `scale`, in any order: the run, unless it is the only one, and the
-// change.
+// The arguments of `set` and `scale`, in any order: the run (optional if there is only one) and
+// the change.
 struct SteerWords {
   TargetOptions target;
   std::vector<std::string> words;

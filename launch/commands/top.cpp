@@ -27,8 +27,8 @@ struct TopOptions {
   bool once = false, json = false, describe = false;
 };
 
-constexpr milliseconds kKeys{100};   // between looks at the keyboard
-constexpr seconds kCoordinator{10};  // without a view: it is gone
+constexpr milliseconds kKeys{100};   // interval of keyboard polls
+constexpr seconds kCoordinator{10};  // liveness timeout: no view for this long
 constexpr char kSilent[] = "the run's coordinator is silent: it has ended, or is paused (Ctrl-Z)";
 
 bool Ended(const RunViewMessage& view) { return view.state == "ended"; }
@@ -38,15 +38,15 @@ void Print(const std::vector<std::string>& lines) {
   std::fflush(stdout);
 }
 
-// The runs that are shown, and how.
+// The run shown, and its display settings.
 struct Watched {
   RunViewMessage view;
   TopOrder order{};
   TopWidths widths{};
-  bool help = false;  // the keys in place of the table
+  bool help = false;  // show the keys instead of the table
 };
 
-// Handles a key; false: quit.
+// Handles a key. Returns false to quit.
 bool OnKey(char key, Watched* watched) {
   TopOrder& order = watched->order;
   watched->help = !watched->help && (key == 'h' || key == '?');
@@ -79,7 +79,7 @@ std::vector<std::string> Screen(Watched* watched) {
   return lines;
 }
 
-// A live table until a key, a signal or the run's end. Returns the last view.
+// Shows a live table until a quit key, a signal or the run's end. Returns the last view.
 RunViewMessage ShowLive(RunClient& client, RunViewMessage view) {
   LiveTerminal terminal;
   Watched watched{.view = std::move(view)};
@@ -106,7 +106,7 @@ RunViewMessage ShowLive(RunClient& client, RunViewMessage view) {
   return watched.view;
 }
 
-// A line a second until a signal or the run's end.
+// Prints one line per second until a signal or the run's end.
 void ShowLines(RunClient& client, RunViewMessage view) {
   Print({FormatTopLine(view)});
   while (!StopRequested() && !Ended(view)) {
@@ -135,7 +135,7 @@ int Top(const TopOptions& options) {
     Print(FormatTop(view, TopOrder(), width));
   } else if (DrawsInPlace()) {
     const RunViewMessage last = ShowLive(client, view);
-    if (Ended(last)) Print({FormatTopLine(last)});  // the table is gone with its screen
+    if (Ended(last)) Print({FormatTopLine(last)});  // the table's screen has been left
   } else {
     ShowLines(client, view);
   }

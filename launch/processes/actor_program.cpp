@@ -26,12 +26,12 @@ namespace fs = std::filesystem;
 constexpr char kProgram[] = "shoal-actor";
 constexpr std::chrono::seconds kProgressInterval{2};
 constexpr std::chrono::seconds kDescribeDeadline{60};
-constexpr std::chrono::seconds kImportDeadline{300};  // to import and try an environment of Python
+constexpr std::chrono::seconds kImportDeadline{300};  // importing and testing a Python environment
 constexpr std::chrono::seconds kStartDeadline{60}, kEpisodeDeadline{60};
-// A thousand larger pictures of the reference quality, drawn without a GPU and encoded.
+// Time to draw and encode a thousand large pictures of quality `reference` without a GPU.
 constexpr std::chrono::seconds kShownEpisodeDeadline{600};
 
-// ProgramError, but a package that the interpreter does not have is named.
+// Like ProgramError, but names the package shoal_rl if the interpreter cannot import it.
 Error ActorError(const ExitStatus& status, const fs::path& errors, const Config& config) {
   const bool no_package = !config.env.id.empty() &&
                           LastLine(errors).find("No module named 'shoal_rl") != std::string::npos;
@@ -41,8 +41,8 @@ Error ActorError(const ExitStatus& status, const fs::path& errors, const Config&
       config.env.python);
 }
 
-// Follows the progress that a program writes into a file of its own: a user's task may print to the
-// program's standard output.
+// Reports the progress lines that a program writes to its own file. Its standard output cannot be
+// used for them, because a user's task may print there.
 class ProgressWatch {
  public:
   // `tell` may be empty.
@@ -65,7 +65,7 @@ class ProgressWatch {
   std::string told_;
 };
 
-// The answer of the actor program to --describe.
+// Runs `shoal-actor --describe` and returns its JSON.
 nlohmann::json AskActor(const Config& config, std::chrono::seconds deadline) {
   const ScratchFolder scratch;
   const fs::path input = scratch.path() / kConfigFile;

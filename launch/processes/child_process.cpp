@@ -25,7 +25,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kTerminate{5000};  // between SIGTERM and SIGKILL
-// After SIGKILL: longer only in uninterruptible I/O; whom it leaves behind init reaps.
+// After SIGKILL a child survives longer only in uninterruptible I/O; init reaps it then.
 constexpr milliseconds kReap{5000};
 
 Descriptor OpenForReading(const std::filesystem::path& path) {
@@ -38,7 +38,7 @@ Descriptor OpenForAppending(const std::filesystem::path& path) {
   return OpenRegular(path, O_WRONLY | O_CREAT | O_APPEND);
 }
 
-// Input of the child; `held` gets our end of it if it is a pipe.
+// Standard input of the child. If the input is a pipe, `held` receives the parent's end.
 Descriptor OpenInput(const ProcessSpec& spec, Descriptor* held) {
   if (!spec.holds_input) return OpenForReading(spec.input.empty() ? "/dev/null" : spec.input);
   Pipe pipe;
@@ -46,7 +46,7 @@ Descriptor OpenInput(const ProcessSpec& spec, Descriptor* held) {
   return std::move(pipe.read);
 }
 
-// Our environment with additions, as NAME=VALUE.
+// This process's environment with additions, as NAME=VALUE.
 std::vector<std::string> Environment(
     const std::vector<std::pair<std::string, std::string>>& additions) {
   std::vector<std::string> all;
@@ -77,10 +77,10 @@ struct ExecPlan {
   int input, output, errors, report;
   pid_t parent;
   bool outlives_parent;
-  const cpu_set_t* cores;  // null: all of ours
+  const cpu_set_t* cores;  // null: all cores of the parent
 };
 
-// Tells the parent why there will be no program.
+// Sends errno to the parent: the program was not started.
 [[noreturn]] void Report(int pipe) {
   const int error = errno;
   [[maybe_unused]] const ssize_t n = write(pipe, &error, sizeof error);
@@ -90,7 +90,7 @@ struct ExecPlan {
 [[noreturn]] void ExecChild(const ExecPlan& plan) {
   if (!plan.outlives_parent) {
     prctl(PR_SET_PDEATHSIG, SIGHUP);
-    if (getppid() != plan.parent) _exit(1);  // it died before the line above
+    if (getppid() != plan.parent) _exit(1);  // the parent died before prctl
   }
   setpgid(0, 0);
   if (plan.cores != nullptr && sched_setaffinity(0, sizeof *plan.cores, plan.cores) != 0) {
@@ -100,7 +100,7 @@ struct ExecPlan {
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
   signal(SIGPIPE, SIG_DFL);  // ignored signals survive exec
-  signal(SIGHUP, SIG_DFL);   // also under nohup: it is our death's message
+  signal(SIGHUP, SIG_DFL);   // sent when the parent dies; nohup would ignore it
   dup2(plan.input, STDIN_FILENO);
   dup2(plan.output, STDOUT_FILENO);
   dup2(plan.errors, STDERR_FILENO);
@@ -165,7 +165,7 @@ std::optional<ExitStatus> ChildProcess::Poll() {
       end.si_pid != pid_) {
     return ended_;
   }
-  RemoveSuspended(pid_);  // before it is reaped, which frees its number
+  RemoveSuspended(pid_);  // before waitpid frees the pid
   int status = 0;
   if (waitpid(pid_, &status, WNOHANG) != pid_) return ended_;
   const bool by_signal = WIFSIGNALED(status);
@@ -201,7 +201,7 @@ std::optional<ExitStatus> RunToEnd(const ProcessSpec& spec, std::chrono::seconds
       child.Signal(SIGTERM);
       terminated = AwakeNow();
     }
-    if (terminated && AwakeNow() - *terminated > kTerminate) return std::nullopt;  // and is killed
+    if (terminated && AwakeNow() - *terminated > kTerminate) return std::nullopt;  // then killed
     SleepFor(kPoll);
   }
 }

@@ -22,7 +22,7 @@ namespace shoal::launch {
 namespace {
 
 constexpr int kPollMs = 100;
-// Deadline for the end of a child that has closed its end of the pipe, as exit does.
+// Time for a child to end after its end of the pipe was closed (exit closes the pipe).
 constexpr std::chrono::seconds kReapChild{30};
 
 int Redirect(const char* file, int flags, int to) {
@@ -35,15 +35,15 @@ int Redirect(const char* file, int flags, int to) {
 
 Detachment::Detachment(std::chrono::seconds deadline) : deadline_(deadline) {
   Pipe pipe;
-  std::fflush(nullptr);  // or both would write it
+  std::fflush(nullptr);  // otherwise both processes would write the buffer
   child_ = fork();
   if (child_ < 0) throw RuntimeError("cannot detach: fork: {}", std::strerror(errno));
   if (child_ == 0) {
     to_parent_ = std::move(pipe.write);
-    setsid();  // no terminal: neither its Ctrl-C nor its end reaches this process any more
+    setsid();  // without a terminal: no SIGINT or SIGHUP from it
     return;
   }
-  pipe.write.Close();  // the child's alone says whether it lives
+  pipe.write.Close();  // then only the child holds the write end
   exit_code_ = WaitForChild(pipe.read.get());
 }
 
@@ -55,8 +55,8 @@ int Detachment::WaitForChild(int from_child) {
     pollfd end{.fd = from_child, .events = POLLIN, .revents = 0};
     if (poll(&end, 1, kPollMs) <= 0) continue;
     char word = 0;
-    if (read(from_child, &word, 1) == 1) return 0;  // it has started
-    return Reap();                                  // it has closed its end: it has ended
+    if (read(from_child, &word, 1) == 1) return 0;  // the child has started
+    return Reap();                                  // end of file: the child has ended
   }
   std::fprintf(
       stderr, "shoal: the run has not started within %d s; process %d goes on trying: shoal runs\n",
@@ -72,7 +72,7 @@ int Detachment::Reap() const {
     SleepFor(std::chrono::milliseconds(1));
   }
   if (WIFEXITED(status)) return WEXITSTATUS(status);
-  // It was stopped in order by the signal that was handed on.
+  // The forwarded signal stopped the child.
   return WTERMSIG(status) == SIGTERM && StopRequested() ? kInterruptedExit : 1;
 }
 
@@ -83,7 +83,7 @@ void Detachment::Started(const std::filesystem::path& log) {
   Redirect("/dev/null", O_RDONLY, STDIN_FILENO);
   const char word = 1;
   [[maybe_unused]] const ssize_t written =
-      write(to_parent_.get(), &word, 1);  // or the parent is gone
+      write(to_parent_.get(), &word, 1);  // fails if the parent has exited
   to_parent_.Close();
 }
 

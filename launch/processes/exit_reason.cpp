@@ -11,11 +11,11 @@ namespace {
 constexpr std::streamoff kTail = 65536;
 
 struct Line {
-  std::string level;  // empty: not of our log
+  std::string level;  // empty: not a line of Shoal's log
   std::string text;
 };
 
-// "2026-01-31 12:00:00.000 learner error: text" (log.cpp); any other line as it is.
+// Parses "2026-01-31 12:00:00.000 learner error: text" (log.cpp). Other lines become the text.
 Line ParseLine(const std::string& line) {
   std::istringstream words(line);
   std::string date, time, name, level;

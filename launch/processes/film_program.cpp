@@ -10,7 +10,7 @@ namespace shoal::launch {
 namespace {
 
 constexpr char kShoal[] = "shoal";
-// The limits that a shown evaluation has (actor_program.cpp).
+// Same limits as for an evaluation with frames (actor_program.cpp).
 constexpr std::chrono::seconds kFilmStart{60}, kFilmedEpisode{600};
 
 }  // namespace
@@ -28,7 +28,7 @@ bool FilmByCommand(const FilmCommand& command, const std::function<bool()>& stop
   std::string said;
   const auto report = [&] {
     std::string line = LastLine(spec.errors);
-    // An error line belongs to the exception, or to the caller's own report of an interruption.
+    // Error lines are reported by the exception, and interruptions by the caller.
     if (line.empty() || line == said || line.starts_with("shoal: ")) return;
     said = std::move(line);
     say(said);

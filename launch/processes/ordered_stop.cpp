@@ -13,16 +13,16 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kPoll{50};
-constexpr milliseconds kAtOnce{1000};      // between SIGTERM and SIGKILL when hurried
-constexpr milliseconds kReapKilled{5000};  // after SIGKILL: longer only in uninterruptible I/O
+constexpr milliseconds kAtOnce{1000};      // between SIGTERM and SIGKILL after a second Ctrl-C
+constexpr milliseconds kReapKilled{5000};  // after SIGKILL; exceeded only in uninterruptible I/O
 
-// Waits until no process of the role is left. False at the deadline, or when hurried and `patient`.
+// Waits until no process of the role is left. Returns false at the deadline and, if `patient`, when
+// hooks.at_once() is true.
 bool WaitForExit(Supervisor& supervisor, std::string_view role, milliseconds deadline,
                  const StopHooks& hooks, bool patient) {
   const SteadyTime start = Now();
   while (true) {
-    // A process that dies for good while actors drain does not prolong the drain: the deadline ends
-    // it.
+    // If a process fails permanently while actors drain, the drain still ends at the deadline.
     if (const auto failure = supervisor.Poll(Now())) hooks.say(*failure);
     if (supervisor.Running(role) == 0) return true;
     if (Now() - start > deadline || (patient && hooks.at_once())) return false;

@@ -30,7 +30,7 @@ ProcessSpec ActorSpec(const Config& config, std::vector<std::string> arguments) 
   const std::vector<std::string> python{config.env.python, "-m", "shoal_rl.actor"};
   spec.command.erase(spec.command.begin());
   spec.command.insert(spec.command.begin(), python.begin(), python.end());
-  // Lines that the environment prints before a crash are in the log.
+  // Unbuffered, so that the log contains the lines that were printed before a crash.
   spec.environment.emplace_back("PYTHONUNBUFFERED", "1");
   return spec;
 }
@@ -104,7 +104,7 @@ std::vector<ProcessSpec> PlanProcesses(const link::RunTopology& topology, const 
     // If the coordinator is killed, the receivers go on acknowledging the last records of the
     // actors. They exit once the heartbeat has been missing and no more records arrive.
     spec.outlives_parent = std::ranges::find(receivers, child) != receivers.end();
-    // A run in lockstep repeats bit for bit: it does not go on without one of its processes.
+    // A lockstep run repeats bit for bit, so it cannot continue without one of its processes.
     const bool acts = child.role == Role::kActor || child.role == Role::kEval;
     spec.expendable = acts && !config.lockstep;
   }

@@ -19,13 +19,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::chrono::seconds kDeadline{30};  // for one command there
+constexpr std::chrono::seconds kDeadline{30};  // for one command on the host
 constexpr char kDdsOverride[] = "SHOAL_DDS_XML";
-constexpr char kDdsCopy[] = "dds.xml";    // its copy in the run's folder there
-constexpr char kSecureCopy[] = "secure";  // the actors' credentials there
+constexpr char kDdsCopy[] = "dds.xml";    // its copy in the run's folder on the host
+constexpr char kSecureCopy[] = "secure";  // the actors' credentials in that folder
 constexpr char kActorRole[] = "actor";
 
-// Programs are looked up on the path.
+// Runs the command through `env`, which searches PATH for the program.
 std::vector<std::string> OnPath(std::vector<std::string> command) {
   command.insert(command.begin(), "/usr/bin/env");
   return command;
@@ -33,11 +33,11 @@ std::vector<std::string> OnPath(std::vector<std::string> command) {
 
 std::vector<std::string> Through(const RemoteHost& host, const std::string& line) {
   std::vector<std::string> command = OnPath(host.ssh);
-  command.push_back("exec " + ShellLine({"sh", "-c", line}));  // whatever the login shell is
+  command.push_back("exec " + ShellLine({"sh", "-c", line}));  // works with any login shell
   return command;
 }
 
-// Runs a command to its end, `input` to `output`; `what` names it in errors.
+// Runs a command to its end; `what` names the command in errors.
 void RunOrThrow(const std::string& what, const std::vector<std::string>& command,
                 const fs::path& input, const fs::path& output, const StopQuestion& stop) {
   const ScratchFolder scratch;
@@ -54,8 +54,8 @@ void RunOrThrow(const std::string& what, const std::vector<std::string>& command
   throw RuntimeError("{}: {}", what, line.empty() ? status->Describe() : line);
 }
 
-// Marks the output of a command on another host, apart from the output of the login around it: a
-// greeting, a message of the day, a line at its end.
+// Lines around the output of a remote command. They separate it from the output of the login shell,
+// such as a message of the day.
 constexpr char kAnswerBegins[] = "shoal: the answer begins",
                kAnswerEnds[] = "shoal: the answer ends";
 
@@ -77,7 +77,7 @@ std::string Ask(const std::string& what, const RemoteHost& host, const std::stri
   return said.substr(begin + begins.size(), end - begin - begins.size());
 }
 
-// Without line breaks at its end.
+// Removes line breaks at the end.
 std::string OneAnswer(std::string answer) {
   while (!answer.empty() && (answer.back() == '\n' || answer.back() == '\r')) answer.pop_back();
   return answer;
@@ -127,7 +127,7 @@ void CheckHost(const RemoteHost& host, const StopQuestion& stop) {
   const std::string program = host.programs / "shoal-actor";
   const std::string version = OneAnswer(Ask(fmt::format("host {}: {}", host.name, program), host,
                                             ShellLine({program, "--version"}), "", stop));
-  // The release counts; commits may differ.
+  // The release must be the same; commits may differ.
   if (!version.starts_with(fmt::format("shoal-actor {} ", BuildVersion()))) {
     throw RuntimeError("host {}: {} has version '{}', this program has '{}'", host.name, program,
                        version, BuildVersion());
@@ -154,7 +154,7 @@ void PushRun(const fs::path& run, const ActorRange& actors, RemoteHost* host,
     for (const fs::path& file : CredentialFiles(secure, kActorRole)) {
       WriteFilePrivately(scratch.path() / kSecureCopy / file.filename(), ReadFile(file));
     }
-    host->secure = kSecureCopy;  // in the run's folder there
+    host->secure = kSecureCopy;  // in the run's folder on the host
   }
   RunOrThrow("tar of " + run.string(), pack, "", "", stop);
   const std::string folder = ShellLine({host->run});

@@ -7,7 +7,7 @@
 namespace shoal::launch {
 
 RestartBackoff::Restart RestartBackoff::OnDeath(std::chrono::milliseconds worked) {
-  constexpr size_t kEnough = 32;  // for any delay: it doubles with each
+  constexpr size_t kEnough = 32;  // the delay doubles with each death
   work_ += worked;
   while (!recent_.empty() && work_ - recent_.front() > limits_.window) recent_.pop_front();
   recent_.push_back(work_);

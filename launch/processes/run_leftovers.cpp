@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr std::chrono::milliseconds kLookAgain{100};
 
-// The temporary names of files.h, checkpoints, `best`, the ring and the accounting.
+// Temporary names that files.h, checkpoints, `best`, the ring and the account use.
 bool IsUnfinished(const std::string& name) {
   const size_t tmp = name.rfind(".tmp");
   if (tmp != std::string::npos && tmp > 0) {

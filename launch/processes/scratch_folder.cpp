@@ -22,8 +22,8 @@ bool IsOwnFolder(const fs::path& path) {
   return lstat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode) && status.st_uid == geteuid();
 }
 
-// Removes the scratch folders in `parent` whose owner is gone. A folder without a lock file is
-// either being made or was not made here: it stays. So does what cannot be read or removed.
+// Removes scratch folders in `parent` whose owner process has ended. Keeps folders without a lock
+// file (they are being created, or belong to another program) and folders that cannot be removed.
 void RemoveAbandoned(const fs::path& parent) {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(parent, error)) {
@@ -41,7 +41,7 @@ void RemoveAbandoned(const fs::path& parent) {
 ScratchFolder::ScratchFolder(const fs::path& parent) {
   RemoveAbandoned(parent);
   path_ = MakeFreshFolder(kPrefix, parent);
-  // The lock file gets its name when it is locked: others take a free one for abandoned.
+  // The lock file is renamed only after it is locked: an unlocked one marks an abandoned folder.
   const fs::path unnamed = path_ / ".owner.new";
   owner_ = FileLock::Take(unnamed);
   fs::rename(unnamed, path_ / kOwner);
@@ -50,7 +50,7 @@ ScratchFolder::ScratchFolder(const fs::path& parent) {
 ScratchFolder ScratchFolder::WithinRun(const fs::path& run) {
   const fs::path path = run / fmt::format(".scratch.tmp-{}", getpid());
   std::error_code error;
-  fs::remove_all(path, error);  // of a dead process with the same number
+  fs::remove_all(path, error);  // left by a dead process with the same pid
   if (mkdir(path.c_str(), 0700) != 0) {
     throw RuntimeError("cannot create folder '{}': {}", path.string(), std::strerror(errno));
   }

@@ -20,8 +20,8 @@ namespace {
 // Exit code of ssh if the connection fails; its other codes are those of the remote program.
 constexpr int kDisconnected = 255;
 
-// A host that cannot be reached may come back: tried for as long as the run lasts.
-constexpr std::chrono::seconds kReconnect{10};  // at most, between two attempts
+// An unreachable host may return, so reconnecting never gives up.
+constexpr std::chrono::seconds kReconnect{10};  // longest delay between two attempts
 
 RestartLimits ConnectionLimits(RestartLimits limits) {
   limits.restarts = std::numeric_limits<int>::max();
@@ -37,7 +37,7 @@ bool IsNonFinite(const ExitStatus& status) {
   return !status.by_signal && status.code == static_cast<int>(ErrorKind::kNonFinite);
 }
 
-// Whether a restart cannot help: a refused configuration, numbers that are not finite any more.
+// Whether a restart cannot help: the configuration was refused, or numbers are not finite.
 bool Hopeless(const ExitStatus& status) {
   return IsNonFinite(status) ||
          (!status.by_signal && status.code == static_cast<int>(ErrorKind::kUsage));
@@ -76,7 +76,7 @@ void Supervisor::Start(const ProcessSpec& spec) {
     child.successor = spec;
     return;
   }
-  std::erase_if(children_, [&](const Child& child) {  // what is left of a retired one
+  std::erase_if(children_, [&](const Child& child) {  // entries of retired children
     return child.spec.Name() == spec.Name() && child.exit_expected && !child.process;
   });
   Child child{.spec = spec,
@@ -161,7 +161,7 @@ void Supervisor::KillIfHung(Child& child, SteadyTime now) {
   child.hung = true;
   say_(fmt::format("{} (pid {}) hangs: no report for {} s; killed", child.spec.Name(),
                    child.process->pid(), limit.count()));
-  child.process->Signal(SIGKILL);  // which a stopped process obeys, too
+  child.process->Signal(SIGKILL);  // also ends a process stopped by SIGSTOP
 }
 
 std::optional<std::string> Supervisor::OnExit(Child& child, const ExitStatus& status,
@@ -255,8 +255,8 @@ std::string Supervisor::DescribeDeaths() const {
 }
 
 void Supervisor::OnExpectedExit(Child& child, const ExitStatus& status) {
-  // A program that a stop signal ends in order dies by it, and so does one that had not begun.
-  // SIGKILL is only sent after everything else was ignored.
+  // A program that handles a stop signal ends by that signal, and so does a program that had not
+  // installed a handler yet. SIGKILL is an unclean exit: all earlier signals were ignored.
   const bool ours = status.by_signal && status.code == child.signalled;
   if (status.Clean() || (ours && status.code != SIGKILL)) return;
   const std::string reason =
@@ -273,7 +273,7 @@ void Supervisor::OnExpectedExit(Child& child, const ExitStatus& status) {
 void Supervisor::ExpectExit(std::string_view role) {
   for (Child& child : children_) {
     if (!Is(role, child.spec)) continue;
-    // Without a successor its work stays unfinished.
+    // The process will not be replaced, so its work stays unfinished.
     if (child.restart_at && !child.spec.expendable) {
       unclean_exits_.push_back(
           fmt::format("{}: had died, and is not started again while stopping", child.spec.Name()));

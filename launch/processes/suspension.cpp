@@ -10,7 +10,7 @@
 namespace shoal::launch {
 namespace {
 
-// All that the handler touches is free of locks.
+// The signal handler uses these lock-free variables only.
 std::array<std::atomic<pid_t>, 1024> children{};  // 0: free
 std::atomic<int> suspensions{0}, refused{0};
 std::atomic<int64_t> suspended_ns{0};
@@ -27,7 +27,7 @@ void OnSuspend(int) {
   const int error = errno;
   const SteadyTime from = Now();  // clock_gettime
   SignalChildren(SIGSTOP);
-  raise(SIGSTOP);  // for this thread, so that the next line waits for SIGCONT; stops all threads
+  raise(SIGSTOP);  // stops all threads; sent to this thread, so that it waits here for SIGCONT
   SignalChildren(SIGCONT);
   suspended_ns += std::chrono::nanoseconds(Now() - from).count();
   ++suspensions;

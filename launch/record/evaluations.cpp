@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-// It becomes a path below "checkpoints"; the text came over the network.
+// The name was received over the network and becomes a path below "checkpoints".
 bool IsPlainName(const std::string& name) {
   return name != "." && name != ".." && name.find('/') == std::string::npos;
 }
@@ -122,7 +122,7 @@ std::vector<EvaluationPoint> ReadEvaluations(const fs::path& run) {
     if (name.starts_with(kEvaluationPrefix) && name.ends_with(".json"))
       files.push_back(entry.path());
   }
-  std::ranges::sort(files);  // the names are padded: by env steps, then updates
+  std::ranges::sort(files);  // names are zero-padded: sorts by env steps, then updates
   std::vector<EvaluationPoint> points;
   points.reserve(files.size());
   for (const fs::path& file : files) points.push_back(ParseEvaluation(ReadFile(file), file));

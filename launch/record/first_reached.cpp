@@ -6,7 +6,8 @@
 namespace shoal::launch {
 namespace {
 
-// Share of an episode: rates times counts are whole numbers except for their last bits.
+// Rates times counts are whole numbers up to rounding errors; this tolerance is far below one
+// episode.
 constexpr double kRounding = 1e-6;
 
 }  // namespace

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Exchanges two folders, or moves `from` to `to` where that does not exist.
+// Exchanges two folders, or moves `from` to `to` if `to` does not exist.
 void Swap(const fs::path& from, const fs::path& to) {
   if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_EXCHANGE) == 0) return;
   if (errno == ENOENT && rename(from.c_str(), to.c_str()) == 0) return;
@@ -37,7 +37,7 @@ std::vector<std::string> NamesIn(const fs::path& folder) {
   return names;
 }
 
-// Makes folder `to` hold the files of checkpoint `from`, under another name first.
+// Replaces folder `to` by a copy of checkpoint `from`. The copy is made under a temporary name.
 void Keep(const fs::path& from, const fs::path& to) {
   const fs::path fresh = to.parent_path() / fmt::format(".{}.tmp", to.filename().string());
   std::error_code error;
@@ -45,22 +45,22 @@ void Keep(const fs::path& from, const fs::path& to) {
   if (!fs::is_directory(from)) {
     throw RuntimeError("checkpoint '{}' is gone: it cannot be kept", from.string());
   }
-  ReadCheckpointFiles(from);  // refuses what is not whole
+  ReadCheckpointFiles(from);  // throws if incomplete
   MakeFolders(fresh);
   for (const std::string& name : NamesIn(from)) {
     // The files of a checkpoint never change, so two folders may share them.
     fs::create_hard_link(from / name, fresh / name, error);
     if (error) WriteFileAtomically(fresh / name, ReadFile(from / name));
   }
-  ReadCheckpointFiles(fresh);  // the learner may have pruned it meanwhile
+  ReadCheckpointFiles(fresh);  // throws if the learner pruned `from` during the copy
   SyncFolder(fresh);
   Swap(fresh, to);
   SyncFolder(to.parent_path());
-  fs::remove_all(fresh, error);  // what was there before
+  fs::remove_all(fresh, error);  // the previous contents of `to`
 }
 
-// Whether both folders share their files. A checkpoint may come again under the same name with
-// other contents: a learner that went on from an earlier one wrote it.
+// Whether both folders share their files. Equal names do not suffice: a learner that continued from
+// an earlier checkpoint can write a different one under the same name.
 bool ShareFiles(const fs::path& a, const fs::path& b) {
   std::error_code error;
   return fs::equivalent(a / kPolicyFile, b / kPolicyFile, error);
@@ -79,9 +79,9 @@ void KeepCheckpoints(const fs::path& run, const std::vector<std::string>& candid
                      const std::string& best) {
   const fs::path checkpoints = run / kCheckpointFolder, kept = checkpoints / kCandidateFolder;
   std::error_code error;
-  fs::create_directory(kept, error);  // not its parents: the run may have been moved away
+  fs::create_directory(kept, error);  // without its parents: the run's folder may have been moved
   if (error) throw RuntimeError("cannot create '{}': {}", kept.string(), error.message());
-  // The best first: what goes wrong with another one does not keep it from its place.
+  // The best checkpoint is kept first, so that a failure with another one does not prevent it.
   std::vector<std::string> names{best};
   std::ranges::copy_if(candidates, std::back_inserter(names),
                        [&](const std::string& name) { return name != best; });

@@ -30,7 +30,7 @@ std::string_view ValueOf(std::string_view key, std::string_view cpuinfo) {
   return {};
 }
 
-// Empty where there is none: files of /proc have no size to ask for.
+// Empty if the file does not exist. Reads to the end, because files in /proc report no size.
 std::string CpuInfo() {
   std::ifstream in("/proc/cpuinfo");
   return {std::istreambuf_iterator<char>(in), {}};

@@ -16,7 +16,7 @@
 namespace shoal::launch {
 namespace {
 
-// Counts as they are; other figures with six significant digits; null for what is not finite.
+// Integers in full; other figures with six significant digits; null if not finite.
 std::string Figure(double value) {
   if (!std::isfinite(value)) return "null";
   if (value == std::floor(value) && std::abs(value) < 1e15) {
@@ -26,7 +26,7 @@ std::string Figure(double value) {
 }
 
 std::string Line(const MetricsMessage& message) {
-  // Names come over the network: what is not UTF-8 in them is replaced.
+  // Names are received over the network: invalid UTF-8 in them is replaced.
   const auto quoted = [](const std::string& text) {
     return nlohmann::json(text).dump(-1, ' ', /*ensure_ascii=*/false,
                                      nlohmann::json::error_handler_t::replace);
@@ -53,12 +53,12 @@ MetricsLog::MetricsLog(const std::filesystem::path& file, const MetricsLogLimits
   }
 }
 
-// A clock that was set back must not silence a process until it has caught up.
+// Also true if the clock was set back, so that no process is silenced until the clock catches up.
 bool MetricsLog::Due(const MetricsMessage& message, const Last& last) const {
   if (bytes_ < limits_.burst_bytes || message.pid != last.pid || message.state == "stopping") {
     return true;
   }
-  size_t round = 0;  // a line of each process
+  size_t round = 0;  // bytes of one line per process
   for (const auto& [process, line] : last_) round += line.bytes;
   const double interval =
       3600 * static_cast<double>(round) / static_cast<double>(limits_.bytes_per_hour);

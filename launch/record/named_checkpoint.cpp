@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Without a slash at the end: "best/" -> "best".
+// The absolute path without a trailing slash: "best/" -> "best".
 fs::path Absolute(const fs::path& path) {
   fs::path absolute = fs::absolute(path).lexically_normal();
   return absolute.has_filename() ? absolute : absolute.parent_path();
@@ -54,7 +54,7 @@ NamedCheckpoint OfRun(const fs::path& run, const std::string& name) {
                    names.empty() ? "none yet" : fmt::format("{}", fmt::join(names, ", ")));
 }
 
-// A copied checkpoint or a card: its own config.json says what its run was.
+// A copied checkpoint or a card: its own config.json replaces that of the run.
 NamedCheckpoint OutsideOfRuns(const fs::path& folder) {
   const bool has_run = fs::exists(folder / kConfigFile) && fs::exists(folder / kStateFile);
   return {has_run ? folder : fs::path(), folder};
@@ -79,7 +79,7 @@ NamedCheckpoint FindCheckpoint(const CheckpointWords& words) {
     }
   }
   if (IsFolder(asked)) return OutsideOfRuns(Absolute(asked));
-  return Judged(FindNamed(asked, runs));  // which says where it looked
+  return Judged(FindNamed(asked, runs));  // its error lists the folders searched
 }
 
 }  // namespace shoal::launch

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-// A longer line is not one of ours: a process reports about a hundred figures.
+// Longer lines are skipped as damaged: a process reports only about a hundred figures.
 constexpr size_t kLongestLine = 64'000;
 
 std::optional<double> Number(const json& line, const char* name) {
@@ -50,7 +50,7 @@ class Thinned {
 std::vector<RolloutPoint> ReadRolloutCurve(const std::filesystem::path& run, size_t most) {
   std::ifstream in(run / kMetricsFile, std::ios::binary);
   Thinned curve(most);
-  double env_steps = 0, updates = 0;  // of the learner's newest line
+  double env_steps = 0, updates = 0;  // from the learner's newest line
   for (std::string text; std::getline(in, text);) {
     // Most lines are those of actors. They are not parsed.
     const bool of_learner = IsOf(text, R"("role":"learner")");

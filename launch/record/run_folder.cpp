@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr int kMostNumbers = 10'000;
 
-// False when it exists already. Throws Error when it cannot be made.
+// Returns false if the folder exists already. Throws Error if it cannot be created.
 bool MakeNewFolder(const fs::path& path) {
   MakeFolders(path.parent_path());
   std::error_code error;
@@ -45,12 +45,12 @@ bool Has(const fs::path& folder, const std::string& file) {
   return fs::is_regular_file(folder / file, error);
 }
 
-// Whether the file cannot be looked for or, where it is, cannot be read.
+// Whether permissions prevent finding or reading the file.
 bool IsForbiddenFile(const fs::path& file) {
   return faccessat(AT_FDCWD, file.c_str(), R_OK, AT_EACCESS) != 0 && errno == EACCES;
 }
 
-// "runs/x/" and "runs/./x" as "runs/x"; a path without a name of its own, as ".", as what it is.
+// Shortens "runs/x/" and "runs/./x" to "runs/x". Resolves paths without a name, such as ".".
 fs::path Tidied(const fs::path& path) {
   fs::path tidy = path.lexically_normal();
   if (!tidy.has_filename()) tidy = tidy.parent_path();
@@ -90,7 +90,7 @@ fs::path FindNamed(const std::string& name_or_folder, std::span<const NamedKind>
                    fmt::join(files, " or "), fmt::join(looked_at, ", "));
 }
 
-// Checkpoints have the configuration of their run, too.
+// Checkpoint folders contain config.json too, but also a state file.
 bool IsRun(const fs::path& folder) { return Has(folder, kConfigFile) && !Has(folder, kStateFile); }
 
 bool IsForbidden(const fs::path& folder) { return IsForbiddenFile(folder / kConfigFile); }
@@ -104,7 +104,7 @@ RunFolder RunFolder::Create(const fs::path& dir, const std::string& name, bool o
       throw UsageError("run '{}' exists: choose another --run-name, --resume it or --overwrite it",
                        path.string());
     }
-    { const RunFolder held(path); }  // refuses one that is running
+    { const RunFolder held(path); }  // throws if the run is running
     Remove(path);
     MakeNewFolder(path);
   }

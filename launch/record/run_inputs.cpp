@@ -25,7 +25,7 @@ std::string Listed(const ObservationSpec& spec, const std::vector<std::string>& 
   return text.empty() ? "nothing" : text;
 }
 
-// Nothing where no goal is drawn.
+// Empty if no goal is drawn.
 std::string MarkerText(const RunConfig& run) {
   if (!run.spec.Recorded("desired_goal")) return "";
   const bool hidden = run.config.replay.hindsight != "none" || run.spec.goal_picture;
@@ -41,7 +41,7 @@ std::string PicturesText(const RunConfig& run) {
                      MarkerText(run));
 }
 
-// Blocks of the record that neither the policy nor learning gets.
+// Recorded blocks that are inputs of neither the policy nor the training.
 std::vector<std::string> Unused(const RunConfig& run) {
   std::vector<std::string> told = PrivilegedBlocksOf(run.config, run.spec).all;
   for (std::string& name : PrivilegedInputsOf(run.config, run.spec).replay_blocks) {

@@ -118,7 +118,7 @@ void WriteRunMeta(const std::filesystem::path& run, const Config& config, const 
       {"faulty_episodes", ordered_json(meta.faulty_episodes)},
       {"exit", meta.exit},
       {"error", meta.error.empty() ? ordered_json(nullptr) : ordered_json(meta.error)}};
-  // A problem may quote what a process said last, in whatever encoding.
+  // `error` may quote the last output of a process, which need not be UTF-8.
   const std::string text =
       object.dump(2, ' ', /*ensure_ascii=*/false, ordered_json::error_handler_t::replace);
   WriteFileAtomically(run / kMetaFile, text + "\n");
@@ -132,7 +132,7 @@ RunMeta ReadRunMeta(const std::filesystem::path& run) {
   try {
     if (object.contains("commits")) {
       object.at("commits").get_to(meta.commits);
-    } else if (object.contains("commit")) {  // of a build that kept the last one only
+    } else if (object.contains("commit")) {  // older builds wrote the last commit only
       meta.commits = {object.at("commit").get<std::string>()};
     }
     object.at("started").get_to(meta.started);

@@ -11,7 +11,7 @@
 namespace shoal::launch {
 namespace {
 
-constexpr uint64_t kBlock = 512;  // of st_blocks, whatever the file system
+constexpr uint64_t kBlock = 512;  // unit of st_blocks on every file system
 
 }  // namespace
 

@@ -30,7 +30,7 @@ ordered_json FiguresJson(const EvaluationFigures& figures) {
           {"final_distance_mean", OrNull(figures.final_distance_mean)}};
 }
 
-// A file another build or a full disk has spoilt is measured anew.
+// Empty if the file is missing or unreadable: the baseline is then measured again.
 std::optional<EvaluationFigures> ReadIfGood(const fs::path& file) {
   std::error_code error;
   if (!fs::exists(file, error)) return std::nullopt;
@@ -67,7 +67,7 @@ fs::path BaselineCache::FileOf(const Config& config, const std::string& policy) 
   std::string key =
       fmt::format("{} {} {} {} {} {}", config.task, config.distance_threshold, config.physics,
                   config.action_repeat, episodes_, HashBytes(model.data(), model.size()));
-  if (config.end_on_success) key += " end_on_success";  // else as builds without the key named it
+  if (config.end_on_success) key += " end_on_success";  // else as in builds without it
   return folder_ /
          fmt::format("{}-{}-{:016x}.json", config.task, policy, HashBytes(key.data(), key.size()));
 }
@@ -111,7 +111,7 @@ std::optional<Baselines> BaselineCache::Measure(
                             stop);
       WriteFileAtomically(file, result.dump() + "\n");
     } catch (const Error&) {
-      if (stop()) return std::nullopt;  // PlayRandom throws when it is stopped
+      if (stop()) return std::nullopt;  // PlayRandom throws when stopped
       throw;
     }
   }

@@ -7,9 +7,9 @@
 namespace shoal::launch {
 namespace {
 
-// Eq. 13: one standard error of the difference between two evaluations of a policy that has the
-// success of this one. One success and one failure are added, so that 50 of 50 is not taken for
-// certain.
+// Eq. 13: one standard error of the difference between two evaluations of a policy with this
+// success rate. One success and one failure are added, so that 50 of 50 does not give an error of
+// 0.
 double ChanceDifference(const EvaluationPoint& point) {
   const auto episodes = static_cast<double>(point.episodes);
   if (episodes == 0) return 0;
@@ -20,7 +20,7 @@ double ChanceDifference(const EvaluationPoint& point) {
 // 0 for a task without a success: its evaluations are compared by their returns alone.
 double SuccessOf(const EvaluationPoint& point) { return point.success.value_or(0); }
 
-// Whatever later evaluations bring, `b` comes before `a`.
+// Whether `b` ranks before `a` independently of later evaluations.
 bool IsOutdone(const EvaluationPoint& a, const EvaluationPoint& b) {
   return SuccessOf(b) >= SuccessOf(a) && b.mean_return >= a.mean_return;
 }

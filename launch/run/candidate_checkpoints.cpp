@@ -24,8 +24,8 @@ std::optional<CheckpointChoice> CandidateCheckpoints::Choose(
     return std::nullopt;
   }
   CheckpointChoice choice;
-  // The learner gives up older checkpoints that it cannot write. Once it can write again, one that
-  // is missing stays missing, and the best is chosen among the others.
+  // While the learner cannot write, it drops older checkpoints. Once it can write again, missing
+  // checkpoints stay missing, and the best is chosen among the others.
   if (!learner_fails_) {
     std::erase_if(candidates, [&](const EvaluationPoint& point) {
       if (exists(point.checkpoint)) return false;

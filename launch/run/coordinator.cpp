@@ -32,7 +32,7 @@ using std::chrono::seconds;
 
 constexpr milliseconds kTurn{50};
 constexpr seconds kMetaPeriod{5};
-constexpr seconds kSlowestImport{300};  // of an environment of Python, before the first report
+constexpr seconds kSlowestImport{300};  // import of a Python environment, before the first report
 
 const char* StateText(RunState state) {
   switch (state) {
@@ -57,8 +57,8 @@ LiveSettings Restored(const Config& config, const std::vector<SettingChange>& ch
   return settings;
 }
 
-// An actor reports between calls of its environment, so that the call that its own watch ends
-// (env.step_timeout) is not a hang before.
+// An actor reports only between calls of its environment. The hang limit must exceed
+// env.step_timeout, after which the actor itself aborts a call.
 HangLimits HangLimitsOf(const Config& config) {
   HangLimits limits;
   if (config.env.id.empty()) return limits;
@@ -148,7 +148,7 @@ RunEnd Coordinator::WaitForEnd(const std::function<void()>& on_started) {
 
 void Coordinator::Stop(RunEnd end) {
   Say(decisions_.BeginEnd(end));
-  const int stops = StopRequests();  // Ctrl-C's that are answered by now
+  const int stops = StopRequests();  // Ctrl-C presses that were handled before
   StopDeadlines deadlines;
   if (!decisions_.CanDrain(supervisor_.Running(RoleName(Role::kReplay)))) {
     deadlines.drain = milliseconds(0);
@@ -163,7 +163,7 @@ void Coordinator::Stop(RunEnd end) {
                .at_once = [stops] { return StopRequests() > stops; },
                .say = [this](const std::string& line) { progress_.Say(line); },
                .settled = [this] { return decisions_.Settled(); }});
-  Tick(/*last=*/true);  // for the messages that arrived last
+  Tick(/*last=*/true);  // processes the last messages received
   Say(decisions_.OnEnded());
   evaluations_.End(Now());
 }
@@ -259,7 +259,7 @@ void Coordinator::Scale(int from, int to) {
   int id = from;
   try {
     for (; id < to; ++id) supervisor_.Start(ActorProcess(settings_.config(), run_, id));
-  } catch (const Error&) {  // refused as a whole: the next order begins at the same number
+  } catch (const Error&) {  // undo all: the next order begins at the same number
     while (--id >= from) supervisor_.Retire(actor, id, Now());
     throw;
   }
@@ -268,7 +268,7 @@ void Coordinator::Scale(int from, int to) {
   if (to > from && !shared.empty()) progress_.Say(shared);
 }
 
-// The actors move first: should one not start, the threads stay as well.
+// The actors are changed first: if one does not start, the threads are not changed either.
 void Coordinator::DivideCores() {
   if (!split_ || decisions_.end() || !decisions_.TakesCommands()) return;
   const Config& config = settings_.config();
@@ -331,7 +331,7 @@ void Coordinator::Show(bool last, SteadyTime now) {
   const ProgressFigures figures = Figures(now);
   record_.scalars().WriteRollouts(watch_.view(), figures, now);
   record_.FlushScalars();
-  // The last view is in metrics.jsonl whenever it is made: it alone may have the last evaluation.
+  // The last view is always written to metrics.jsonl: only it may contain the last evaluation.
   if (view_due) {
     const CoordinatorCounts counts{.messages_dropped = inbox_.dropped(),
                                    .reports_refused = inbox_.refused(),
@@ -362,7 +362,7 @@ RunResources Coordinator::Resources() const {
           .actors = config.actors,
           .actors_elsewhere = !hosts_.empty(),
           .learner_threads = config.learner.threads,
-          // A run that divides the cores itself has measured what advice could only expect.
+          // 0: no advice on the division. A run that divides the cores itself has measured it.
           .most_threads = split_ ? 0 : MostThreads(config),
           .may_play_ahead = LearnsOnPolicy(config) && config.ppo.versions_ahead == 0};
 }
@@ -397,7 +397,8 @@ std::map<std::string, uint64_t> Coordinator::FaultyEpisodes() const {
 
 RunMeta Coordinator::Meta() const {
   RunMeta meta = before_;
-  // Until the end has been reached: --resume takes up a run whose coordinator is killed before.
+  // "running" until the end is reached, so that --resume accepts the run if the coordinator is
+  // killed earlier.
   meta.exit = "running";
   meta.error = decisions_.error();
   meta.env_steps = decisions_.env_steps();

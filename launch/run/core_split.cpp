@@ -16,7 +16,7 @@ std::string DescribeSplit(const Split& split) {
                      split.threads == 1 ? "" : "s", split.actors, split.actors == 1 ? "" : "s");
 }
 
-// The counts between two looks.
+// The growth of the counts between two calls of Look.
 SplitCounts Difference(const SplitCounts& before, const SplitCounts& now) {
   return {.env_steps = now.env_steps - before.env_steps,
           .updates = now.updates - before.updates,
@@ -87,8 +87,8 @@ std::optional<CoreSplit::Move> CoreSplit::Decide(const SplitCounts& counted,
                         .servers = counted.servers_cpu_seconds / counted.env_steps,
                         .further_thread = further};
   const Split next = BestSplit(costs, limits_);
-  // The model has each side work without a break. The waits that keep the measured pace below the
-  // model's would be in the other division, too.
+  // The model assumes that neither side waits. Waits that keep the measured pace below the modelled
+  // one would occur in the other division, too.
   const double gain = PaceOf(costs, next) / std::max(best.pace, PaceOf(costs, now_));
   if (may_try && gain >= kGain && !Tried(next)) {
     return Move{next, fmt::format("{} cores: {} from now on, {} before; an update took {:.1f} ms, "
@@ -108,13 +108,13 @@ double CoreSplit::FurtherThread() const {
   for (size_t i = trials_.size() - 1; i-- > 0;) {
     const Trial& other = trials_[i];
     if (other.split.threads == last.split.threads || other.update_seconds <= 0) continue;
-    // t N = c (1 + w (N - 1)), of both.
+    // Solves t N = c (1 + w (N - 1)) for w with both trials.
     const double ratio =
         last.update_seconds * last.split.threads / (other.update_seconds * other.split.threads);
     const double below = (last.split.threads - 1) - ratio * (other.split.threads - 1);
     const double further = below == 0 ? -1 : (ratio - 1) / below;
     if (further >= 0) return std::min(further, 1.0);
-    // No w fits: more threads gained more than their number, or nothing at all.
+    // No w >= 0 fits: the speed-up was more than linear, or there was none.
     const bool gained = (ratio <= 1) == (last.split.threads > other.split.threads);
     return gained ? 0.0 : 1.0;
   }

@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 
 constexpr char kPythonFile[] = ".py:";
 
-// Not canonical: the python of a virtual environment is a link, and its place says which one it is.
+// Does not resolve links: the python of a virtual environment is a link, and Python finds the
+// environment by the path of that link.
 std::string Absolute(const std::string& path) { return fs::absolute(path).lexically_normal(); }
 
 std::string OnSearchPath(const std::string& program) {

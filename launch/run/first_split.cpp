@@ -11,14 +11,14 @@
 namespace shoal::launch {
 namespace {
 
-// An actor's inference and sending, beside physics and pictures.
+// Time of an env step with inference and sending, as a multiple of physics and rendering.
 constexpr double kActing = 1.1;
-// Evaluation steps a few environments beside each interval of training; the replay server stores
-// and copies. Both together, of an env step (docs/performance.md, "Many actors").
+// Cost of evaluation and replay server per env step, in env steps (docs/performance.md, "Many
+// actors").
 constexpr double kServers = 0.4;
 
-// GFLOP/s of an update on one core: about what docs/performance.md has of CPUs of each kind. The
-// division depends on it only until the run has measured its own.
+// GFLOP/s of an update on one core, from docs/performance.md for CPUs of each kind. Only the first
+// division of the cores uses it; later ones use measurements.
 double Speed(nn::Precision precision) {
   if (precision == nn::Precision::kBf16) return 150;
   const std::string isa = nn::CpuIsa();

@@ -14,7 +14,7 @@ struct Half {
   double mean = 0, variance_of_mean = 0;
 };
 
-// A figure over kHalf evaluations, the first of which is `from`.
+// Mean of a figure over kHalf evaluations, beginning with number `from`.
 template <class Figure>
 Half HalfOf(const std::deque<EvaluationPoint>& points, size_t from, const Figure& figure) {
   Half half;

@@ -32,10 +32,10 @@ namespace {
 
 using std::chrono::seconds;
 
-constexpr seconds kEnd{60};  // for a role's threads to end after a request to stop
+constexpr seconds kEnd{60};  // time for a role's threads to end after a stop request
 constexpr std::chrono::milliseconds kPoll{5};
 
-// Threads cannot be killed alone: the process ends, as if all roles had been killed.
+// Threads cannot be killed individually, so the whole process ends, as if all roles were killed.
 [[noreturn]] void EndProcess(const std::string& name) {
   std::fprintf(stderr,
                "shoal: error: %s does not end, and a role of one process (--in-process) cannot be "
@@ -90,7 +90,7 @@ class RoleThreads final : public RunningProcess {
   const std::function<int()> body_;
   int exit_code_ = 0;  // valid once ended_
   std::atomic<bool> ended_{false};
-  Thread thread_;  // last: it uses the others
+  Thread thread_;  // last member: it uses the others
 };
 
 }  // namespace
@@ -130,7 +130,7 @@ int InProcessRoles::Run(const ProcessSpec& spec) {
 }
 
 void PrepareForRolesInProcess() {
-  setenv("LP_NUM_THREADS", "0", 1);  // no threads of the renderer's: the actors fill the cores
+  setenv("LP_NUM_THREADS", "0", 1);  // no renderer threads: actors use all cores
   std::vector<std::string> words = ProgramWords();
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());

@@ -40,7 +40,7 @@ bool IsLive(std::string_view key) {
   return std::ranges::find(kKeys, key, &LiveKey::key) != std::end(kKeys);
 }
 
-// A number of threads that the learner can take while it runs.
+// Throws Error if a running learner cannot change to this number of threads.
 void CheckThreads(const Config& config) {
   if (LearnsOnPolicy(config)) {
     throw UsageError("learner.threads is fixed for the run: {} learns on policy",
@@ -52,13 +52,13 @@ void CheckThreads(const Config& config) {
   CheckReplicas(config, config.learner.threads);
 }
 
-// A number, or the text of a schedule.
+// The key's value: a number, or a schedule as text.
 nlohmann::ordered_json JsonOf(const Config& config, std::string key) {
   std::ranges::replace(key, '.', '/');
   return ToJson(config).at(nlohmann::ordered_json::json_pointer("/" + key));
 }
 
-// The number in force once the run has done so many env steps.
+// The value of the key after this number of env steps.
 double ValueOf(const Config& config, const std::string& key, uint64_t env_steps) {
   const nlohmann::ordered_json value = JsonOf(config, key);
   if (!value.is_string()) return value.get<double>();
@@ -94,7 +94,7 @@ SettingChange LiveSettings::SetActors(const std::string& count) {
 SettingChange LiveSettings::Apply(const std::string& key, const std::string& assignment,
                                   uint64_t env_steps) {
   Config changed = config_;
-  ApplyAssignments({assignment}, &changed);  // refuses keys and values that do not exist
+  ApplyAssignments({assignment}, &changed);  // throws for unknown keys and invalid values
   if (!IsLive(key)) {
     throw UsageError("{} is fixed for the run; what can be changed: {}", key, LiveKeyNames());
   }

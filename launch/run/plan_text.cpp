@@ -74,7 +74,7 @@ std::string UpdateText(const RunConfig& run) {
       encoder, config.learner.batch, cost.flop / kGiga);
 }
 
-// Inputs of learning that the policy does not have. Results of such a run must name them.
+// Privileged inputs of the training. Results of the run must name them.
 std::string PrivilegedText(const RunConfig& run) {
   const PrivilegedInputs inputs = PrivilegedInputsOf(run.config, run.spec);
   std::vector<std::string> lines;
@@ -100,7 +100,7 @@ std::string ObjectText(const ObservationSpec& spec) {
       fmt::join(blocks, ", "));
 }
 
-// One frame shows no velocity. Tasks with a success can be solved without it.
+// A single frame shows no velocity. Tasks with a success can be solved without velocities.
 std::string StackText(const RunConfig& run) {
   const auto tells_velocity = [](const BlockSpec& block) {
     return block.observed && block.name.find("velocit") != std::string::npos;
@@ -113,8 +113,8 @@ std::string StackText(const RunConfig& run) {
   return "  observation.stack = 1: the policy sees no velocity; 3 is usual for this task\n";
 }
 
-// The configuration that the run's own one was made from. Empty if the preset names no task, is
-// gone or is no longer valid: the run does not need it.
+// The preset's configuration, or the defaults if there is no preset. Empty if the preset names no
+// task or cannot be read: the run does not need it.
 std::optional<Config> StartOf(const Config& config) {
   if (config.preset.empty()) return Config();
   try {
@@ -126,7 +126,8 @@ std::optional<Config> StartOf(const Config& config) {
   }
 }
 
-// Names keys that still have the values of the preset, or of the defaults, for another task.
+// Names keys whose values were chosen for another task: those unchanged from the preset or the
+// defaults.
 std::string DefaultsText(const Config& config) {
   const std::optional<Config> start = StartOf(config);
   if (!start || config.task == start->task) return "";

@@ -38,8 +38,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The network against what a receiver of weights takes and what the learner's threads can share,
-// and the threads against the cores: the learner runs on this host.
+// Checks that the network fits into a message of weights, that the learner's threads can divide the
+// batch, and that this host, which runs the learner, has enough cores.
 void CheckNetwork(const RunConfig& run) {
   nn::CheckNetwork(run.config.network, run.spec, run.config.learner.batch,
                    int64_t{kMaxWeightsBytes});
@@ -60,8 +60,8 @@ void NamingBothNetworks(const std::string& file, const NetworkConfig& network, c
   }
 }
 
-// Reads network.encoder_weights and --init-from as the learner will, so that it need not refuse
-// them.
+// Reads network.encoder_weights and --init-from like the learner, to report errors before the
+// start.
 void ReadStartWeights(const TrainOptions& options, RunRequest* request) {
   const RunConfig& run = request->config;
   const NetworkConfig& network = run.config.network;
@@ -78,7 +78,7 @@ void ReadStartWeights(const TrainOptions& options, RunRequest* request) {
   });
 }
 
-// The nearest existing folder above a fresh run's. Throws Error if no run can be made in it.
+// Returns the nearest existing parent folder of a fresh run. Throws Error if it is not writable.
 fs::path CheckFolder(const Config& config) {
   std::error_code error;
   fs::path folder = fs::absolute(config.run_dir);
@@ -90,11 +90,11 @@ fs::path CheckFolder(const Config& config) {
   return folder;
 }
 
-// `folder`: of a run that exists; empty for a fresh one.
+// `folder`: the folder of an existing run; empty for a fresh one.
 void CheckReplay(const RunConfig& run, const fs::path& folder) {
   const Config& config = run.config;
   CheckSendingWindow(config, RecordLayout(run.spec).record_bytes());
-  if (LearnsOnPolicy(config)) {  // without a replay
+  if (LearnsOnPolicy(config)) {  // such runs have no replay
     if (folder.empty()) CheckFolder(config);
     return;
   }
@@ -107,7 +107,7 @@ void CheckReplay(const RunConfig& run, const fs::path& folder) {
     replay::CheckMemoryRoom(needs.memory_bytes + needs.ring_bytes);
     return;
   }
-  replay::CheckMemoryRoom(needs.memory_bytes, "stop other programs");  // beside the file
+  replay::CheckMemoryRoom(needs.memory_bytes, "stop other programs");  // without the ring
   if (folder.empty()) {
     replay::CheckDiskRoom(CheckFolder(config), needs.ring_bytes);
   } else if (!fs::exists(folder / kRingFile)) {

@@ -38,7 +38,8 @@ RunConfig ReadConfigToGoOn(const fs::path& run) {
   return config;
 }
 
-// The end of a run that has ended stays as it is, unless an option asks for more.
+// Refuses to resume a finished and evaluated run unless --set is given, for example to raise its
+// budget.
 void RefuseFinished(const fs::path& run, const RunMeta& meta, const Config& config,
                     const TrainOptions& options) {
   const bool ended = meta.exit == "budget" || meta.exit == "target";
@@ -50,8 +51,8 @@ void RefuseFinished(const fs::path& run, const RunMeta& meta, const Config& conf
       run.string(), meta.exit, meta.env_steps);
 }
 
-// Values that --set changes now are further changes of a run that was steered: the last one holds.
-// `now`: the configuration with them.
+// Appends the values of --set to the run's recorded changes, where the last change of a key holds.
+// `now`: the configuration with these values.
 void NoteResumeOptions(const TrainOptions& options, const Config& before, const Config& now,
                        RunMeta* meta) {
   if (before.lockstep) return;
@@ -59,7 +60,7 @@ void NoteResumeOptions(const TrainOptions& options, const Config& before, const 
   settings.Restore(meta->changes);
   for (const std::string& assignment : options.set) {
     const bool threads = assignment.starts_with("learner.threads=");
-    if (SetsForMachine(assignment) && !threads) continue;  // no live setting; config.json has it
+    if (SetsForMachine(assignment) && !threads) continue;  // not live; config.json has it
     if (threads && LearnsOnPolicy(before)) continue;
     SettingChange change = settings.Assign(
         threads ? fmt::format("learner.threads={}", now.learner.threads) : assignment,
@@ -71,9 +72,8 @@ void NoteResumeOptions(const TrainOptions& options, const Config& before, const 
   }
 }
 
-// Refuses a checkpoint of another network, which the learner would find with every process running.
-// A damaged checkpoint, or one of another version, is the learner's to refuse: it may take an older
-// one.
+// Refuses a checkpoint of another network before any process starts. A checkpoint that is damaged
+// or of another version is left to the learner, which may continue from an older checkpoint.
 void CheckResumedCheckpoint(const fs::path& run, const Config& config) {
   const fs::path folder = NewestCheckpoint(run);
   if (folder.empty()) return;
@@ -86,12 +86,12 @@ void CheckResumedCheckpoint(const fs::path& run, const Config& config) {
   policy::CheckWriter(folder, files.state, files.description, config);
 }
 
-// --hosts, else the hosts that the run had.
+// The file of --hosts, else the run's own hosts file.
 fs::path HostsToGoOn(const TrainOptions& options, const fs::path& run) {
   return options.hosts.empty() ? HostsFile(run) : fs::path(options.hosts);
 }
 
-// Actors below this number run on this host.
+// Number of actors on this host; their ids are below this number.
 uint32_t OwnActors(const TrainOptions& options, const fs::path& run, int actors) {
   if (!fs::exists(HostsFile(run))) return static_cast<uint32_t>(actors);
   int elsewhere = 0;
@@ -100,7 +100,7 @@ uint32_t OwnActors(const TrainOptions& options, const fs::path& run, int actors)
   return static_cast<uint32_t>(std::max(0, actors - elsewhere));
 }
 
-// Prints `lines` and what the check finds. With `repair`, rebuilds what is damaged or missing.
+// Prints `lines` and the findings of the check. With `repair`, rebuilds damaged or missing files.
 void CheckFiles(const fs::path& run, const RunConfig& config, const RunMeta& meta,
                 uint32_t own_actors, std::vector<std::string> lines, bool repair) {
   const RunCheck check = CheckRunFiles(run, config, meta, own_actors);
@@ -121,8 +121,8 @@ Hosts ResumedHosts(const TrainOptions& options, const fs::path& run, const Confi
   return hosts;
 }
 
-// Whether the replay may go on computing rewards for other goals as it did. A threshold is found
-// from samples at each start.
+// Whether the reward for relabelled goals is unchanged. Thresholds are compared with a tolerance,
+// because each start estimates the threshold from samples.
 bool HasGoalOf(const tasks::EnvironmentDescription& was, const tasks::EnvironmentDescription& now) {
   constexpr double kTolerance = 1e-5;  // relative
   if (!was.goal) return true;
@@ -130,8 +130,8 @@ bool HasGoalOf(const tasks::EnvironmentDescription& was, const tasks::Environmen
          std::abs(now.goal->threshold - was.goal->threshold) <= kTolerance * was.goal->threshold;
 }
 
-// The world that the actors observe now. What playing showed when the run began stays: whether
-// steps report success, and the goal unless its rewards have changed.
+// The world that the actors observe now. Keeps two findings of the first start: whether steps
+// report success, and the goal if its rewards are unchanged.
 ObservedWorld ObserveEnvironmentAgain(const RunConfig& run) {
   tasks::EnvironmentDescription now = DescribeEnvironment(run.config).description;
   const tasks::EnvironmentDescription was =
@@ -184,7 +184,7 @@ RunRequest ResolveResumed(const TrainOptions& options,
 }
 
 std::string FormerSecurity(const fs::path& run) {
-  if (!fs::exists(run / kClusterFile)) return "";  // killed before it was started
+  if (!fs::exists(run / kClusterFile)) return "";  // killed before its start
   std::string secure;
   Refusing("give --secure FOLDER where the run is secured, else remove the file",
            [&] { secure = ReadClusterAddress(run).secure; });

@@ -81,7 +81,7 @@ class Examination {
   const RunMeta& meta_;
   const uint32_t own_actors_;
   bool has_ring_ = false;
-  RunAccount account_;  // as it will be
+  RunAccount account_;  // after repairs
   RunCheck check_;
 };
 
@@ -110,7 +110,8 @@ void Examination::LookAtRing() {
   }
 }
 
-// From the ring, or else from what the actors made. `what` is no longer known then.
+// The account rebuilt from the ring or, without a ring, from the actors' counters. `*what` names
+// the source and the losses.
 RunAccount Examination::RebuiltAccount(std::string* what) {
   RunAccount account{.stored_steps = meta_.env_steps, .ring_replaced = true};
   if (has_ring_) {
@@ -141,7 +142,7 @@ void Examination::LookAtAccount() {
   const bool begun = meta_.env_steps > 0;
   const bool missing = !Exists(file);
   if (!missing && !Throws([&] { account_ = ReadAccount(run_); })) {
-    // Killed processes leave an account that is up to a second old.
+    // After a kill, the account on disk may be up to a second old.
     if (has_ring_ || OnPolicy() || account_.stored_steps >= meta_.env_steps) return;
     account_.stored_steps = meta_.env_steps;
   } else if (!missing || (begun && !has_ring_)) {
@@ -156,7 +157,7 @@ void Examination::LookAtAccount() {
 }
 
 void Examination::LookAtSequenceLogs() {
-  std::map<std::pair<uint32_t, uint64_t>, uint64_t> seen;  // of the account
+  std::map<std::pair<uint32_t, uint64_t>, uint64_t> seen;  // from the account
   for (const SessionCounters& counters : account_.sessions) {
     if (counters.actor < own_actors_) seen[{counters.actor, counters.session}] = counters.highest;
   }
@@ -200,8 +201,8 @@ void Examination::LookAtUpdatePage() {
   });
 }
 
-// A session number orders a process after its predecessors. These have ended, so the clock's number
-// is enough unless the clock was set back; for actors and learner other files hold the last one.
+// A session number must exceed those of earlier processes. If the file is damaged, the clock gives
+// a greater number unless it was set back; other files hold the last number of actors and learner.
 void Examination::LookAtSessions() {
   std::error_code error;
   for (fs::directory_iterator it(run_ / kSessionFolder, error), end; !error && it != end;

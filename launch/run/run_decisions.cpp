@@ -39,7 +39,7 @@ void RunDecisions::Change(const Config& config) {
 }
 
 std::optional<std::string> RunDecisions::Fail(const std::string& why) {
-  if (!error_.empty()) return std::nullopt;  // a full disk would repeat itself
+  if (!error_.empty()) return std::nullopt;  // keep the first error: later ones may repeat it
   error_ = why;
   return "error: " + why;
 }
@@ -89,7 +89,7 @@ std::optional<std::string> RunDecisions::BeginEnd(RunEnd end) {
       return stop_commanded_ ? "stopping the run, as commanded"
                              : "stopping the run; Ctrl-C again to stop at once";
     case RunEnd::kFailed:
-      return std::nullopt;  // Fail gave the reason
+      return std::nullopt;  // Fail returned the line
   }
   return std::nullopt;
 }
@@ -118,7 +118,7 @@ std::optional<RunEnd> RunDecisions::MustEnd(bool interrupted) const {
   if (!error_.empty()) return RunEnd::kFailed;
   if (interrupted || stop_commanded_) return RunEnd::kInterrupted;
   if (rule_.TargetReached()) return RunEnd::kTarget;
-  // Without a replay the learner counts env steps, and a dead one's may be gone.
+  // On policy the learner counts env steps; if it died, its last count may be lost.
   const bool counted = topology_.Has(link::Role::kReplay) || progress_.learner_lives();
   if (counted && rule_.BudgetSpent(env_steps())) return RunEnd::kBudget;
   return std::nullopt;

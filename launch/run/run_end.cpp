@@ -33,13 +33,13 @@ bool WantsFinalEvaluation(const RunMeta& meta) {
   return meta.exit != "interrupted" && !StopRequested();
 }
 
-// Keeps watchers and those who steer the run answered while it is evaluated and filmed.
+// Publishes views and answers commands while the run is evaluated and filmed.
 class Judging {
  public:
   Judging(RunServer& server, Progress& progress) : server_(server), progress_(progress) {}
 
-  // Asked for several times a second. Whether the rest is to be left out: after a stop signal, also
-  // by the end of the terminal, and after `shoal stop`.
+  // Whether to skip the rest: after a stop signal (also SIGHUP) or `shoal stop`. Called several
+  // times per second.
   bool Stops() {
     server_.ShowAgain("evaluating", Now());
     for (const CommandMessage& command : server_.TakeCommands()) Answer(command);
@@ -97,7 +97,8 @@ fs::path FilmAtEnd(const fs::path& run, const Config& config, Judging& judging) 
   return {};
 }
 
-// A film wants a checkpoint, curves and a page an evaluation.
+// Prints commands that work for this run: a film needs a checkpoint; curves and a page need an
+// evaluation.
 void PrintWhatToLookAt(const fs::path& run, bool filmed, Progress& progress) {
   std::string commands;
   std::error_code error;
@@ -121,7 +122,7 @@ std::string FaultyEpisodesText(const RunMeta& meta) {
                      counts);
 }
 
-// `film` is empty where there is none.
+// `film` is empty if there is no film.
 void PrintSummary(const fs::path& run, const Config& config, const RunResult& result,
                   const std::optional<EvaluationPoint>& final_evaluation, const fs::path& film,
                   Progress& progress) {
@@ -160,10 +161,10 @@ void PrintSummary(const fs::path& run, const Config& config, const RunResult& re
   PrintWhatToLookAt(run, !film.empty(), progress);
 }
 
-// Whether the run ended by its own rule, so that nothing is left to do.
+// Whether the run reached its target or budget.
 bool Finished(const RunMeta& meta) { return meta.exit == "target" || meta.exit == "budget"; }
 
-// A finished run has no use for its replay, which is by far its largest file.
+// A finished run does not need its replay, which is by far its largest file.
 void RemoveRing(const fs::path& run, const Config& config, Progress& progress) {
   const fs::path ring = run / kRingFile;
   std::error_code error;
@@ -173,7 +174,7 @@ void RemoveRing(const fs::path& run, const Config& config, Progress& progress) {
                            ring.string(), FormatBytes(bytes)));
 }
 
-// The exit code of a run that was not all written.
+// Reports files that could not be written. Returns the exit code.
 int ReportUnwritten(const fs::path& run, const std::set<std::string>& unwritten,
                     Progress& progress) {
   progress.Say(fmt::format(
@@ -189,7 +190,7 @@ void TakeAccount(const fs::path& run, const Config& config, const link::RunTopol
                  const std::set<std::string>& unwritten, Progress& progress, const Fail& fail,
                  RunMeta* meta) {
   try {
-    // A receiver that could not write its last account leaves an old one.
+    // If a receiver could not write its last account, the file holds an older one.
     for (const link::RunProcess& receiver : topology.RecordReceivers()) {
       if (!unwritten.contains(receiver.Name().Text())) continue;
       throw RuntimeError("{} could not write {}", receiver.Name().Text(), kAccountingFile);
@@ -205,7 +206,7 @@ void TakeAccount(const fs::path& run, const Config& config, const link::RunTopol
   }
 }
 
-// Empty when it was left out or not asked for.
+// Empty if the final evaluation was skipped or not configured.
 std::optional<EvaluationPoint> Judge(const fs::path& run, const Config& config, Judging& judging,
                                      const Fail& fail, RunMeta* meta) {
   std::optional<EvaluationPoint> evaluation;
@@ -222,7 +223,7 @@ std::optional<EvaluationPoint> Judge(const fs::path& run, const Config& config, 
   return evaluation;
 }
 
-// Adds meta.json to `unwritten`, or takes it off: this time counts.
+// Adds meta.json to `unwritten` or removes it, depending on this last attempt.
 void WriteLastMeta(const fs::path& run, const Config& config, WriteFaults& faults,
                    std::set<std::string>* unwritten, RunMeta* meta) {
   meta->finished = UtcTimestamp();
@@ -249,7 +250,7 @@ int EndRun(const fs::path& run, const Config& config, const link::RunTopology& t
     progress.Say("error: " + why);
   };
   TakeAccount(run, config, topology, unwritten, progress, fail, &meta);
-  // A file that failed before the end is reported once it is written now.
+  // `unwritten` makes it print a line if a file that failed earlier can be written now.
   WriteFaults faults([&](const std::string& line) { progress.Say(line); }, unwritten);
   if (!faults.Try(kBottleneckFile, [&] { WriteBottleneck(run, result.bottleneck); })) {
     unwritten.insert(kBottleneckFile);
@@ -264,7 +265,7 @@ int EndRun(const fs::path& run, const Config& config, const link::RunTopology& t
       filmed = FilmAtEnd(run, config, judging);
     }
   } catch (const Error& e) {
-    good = false;  // what was asked for is not there; the run itself is none the worse
+    good = false;  // a missing film does not affect the run itself
     progress.Say(fmt::format("error: no film: {}", e.what()));
   }
   PrintSummary(run, config, result, final_evaluation, filmed, progress);

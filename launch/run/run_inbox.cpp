@@ -5,7 +5,7 @@ namespace shoal::launch {
 namespace {
 
 constexpr size_t kMessages = 10'000;
-constexpr size_t kMostEvaluations = 64;  // of a megabyte each, where they are nonsense
+constexpr size_t kMostEvaluations = 64;  // an invalid one may have a megabyte
 
 }  // namespace
 

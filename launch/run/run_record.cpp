@@ -38,7 +38,7 @@ void RunRecord::KeepCheckpointsOf(const std::vector<EvaluationPoint>& candidates
   if (!choice) return;
   for (const std::string& line : choice->lines) say_(line);
   const bool kept = faults_.Try(fmt::format("{}/{}", kCheckpointFolder, kBestCheckpoint), [&] {
-    // If this fails, the best checkpoint of before is still whole.
+    // If this fails, the previous best checkpoint remains complete.
     if (!choice->names.empty()) KeepCheckpoints(run_, choice->names, choice->best);
   });
   not_kept_ = kept ? std::nullopt : std::optional(candidates);

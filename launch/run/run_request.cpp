@@ -26,8 +26,8 @@
 namespace shoal::launch {
 namespace {
 
-// If the task chose cameras because it has none of the default ones, the configuration names them
-// from now on. Returns a line for the start; empty if nothing was chosen.
+// If the task has none of the configured cameras and chose others, writes these into the
+// configuration. Returns a line for the start; empty if nothing was chosen.
 std::string TakeCameras(RunConfig* run) {
   std::vector<std::string>& cameras = run->config.observation.cameras;
   if (!run->spec.HasPixels() || cameras == run->spec.cameras) return "";
@@ -39,7 +39,7 @@ std::string TakeCameras(RunConfig* run) {
   return note;
 }
 
-// The division of the cores that the run starts with, where it has one to choose.
+// Sets the first division of the cores if the run chooses its division.
 void DivideCores(double step_microseconds, RunRequest* request) {
   if (!request->split_limits) return;
   const auto costs = ExpectedCosts(request->config, step_microseconds);
@@ -60,8 +60,8 @@ void RefuseOtherHosts(const Config& config, const Hosts& hosts) {
                    config.env.id, RunnerOf(config));
 }
 
-// Asks the environment of env.id what it observes, and resolves the configuration again with what
-// follows from that.
+// Queries the observations of the environment env.id and resolves the configuration again with the
+// defaults for them.
 void TakeEnvironment(const TrainOptions& options, RunRequest* request) {
   RunConfig& run = request->config;
   const DescribedEnvironment described = DescribeEnvironment(run.config);
@@ -82,14 +82,14 @@ void TakeEnvironment(const TrainOptions& options, RunRequest* request) {
 
 RunFolder CreateFolder(const TrainOptions& options, const Config& config) {
   if (config.run_name.empty()) {
-    // The presets for environments of any kind say less than the environment's name.
+    // Presets for environments are general, so the environment's name describes the run better.
     const bool by_task = config.preset.empty() || !config.env.id.empty();
     const std::string& kind = by_task ? config.task : config.preset;
     return RunFolder::CreateNumbered(config.run_dir, fmt::format("{}-s{}", kind, config.seed));
   }
   const std::filesystem::path folder = std::filesystem::path(config.run_dir) / config.run_name;
-  // If --overwrite replaced a run whose processes still write, they would write into the new one.
-  // Create refuses a run that a coordinator holds.
+  // If --overwrite replaced a run whose processes still write, they would write into the new run.
+  // If a coordinator holds the old run, Create refuses.
   if (options.overwrite && !IsHeld(folder)) WaitUntilUnused(folder);
   return RunFolder::Create(config.run_dir, config.run_name, options.overwrite);
 }
@@ -125,7 +125,7 @@ RunRequest ResolveFresh(const TrainOptions& options) {
     DivideCores(world.step_microseconds, &request);
     request.camera_note = TakeCameras(&request.config);
   }
-  PrivilegedBlocksOf(config, request.config.spec);  // throws if they do not exist
+  PrivilegedBlocksOf(config, request.config.spec);  // throws for unknown blocks
   return request;
 }
 

@@ -70,7 +70,7 @@ std::vector<CommandMessage> RunServer::TakeCommands() {
     const auto before = std::ranges::find_if(answered_, same_client);
     if (before != answered_.end() && before->request == command.request) {
       replies_.Write(*before);
-    } else if (std::ranges::none_of(fresh, same_client)) {  // a client waits for its reply
+    } else if (std::ranges::none_of(fresh, same_client)) {  // one open command per client
       fresh.push_back(command);
     }
   }

@@ -62,7 +62,7 @@ std::vector<MetricsMessage> RunWatch::Reports(const ProgressFigures& figures, co
   MetricsMessage own = own_report_.message();
   link::AddMalformed(hub_, &own);
   WriteLine(own);
-  AddShares(lately_, &own);  // for who watches; the file has what they are made of
+  AddShares(lately_, &own);  // views only: the file has the counters they derive from
   view_.OnMessage(own, now);
   return view_.Reports(now);
 }

@@ -15,9 +15,9 @@ double TargetOf(const Config& config) {
   return config.stop.success <= 1 ? config.stop.success : kUsualTarget;
 }
 
-// In lockstep the last phase is played to its end.
+// A lockstep run completes its last phase.
 uint64_t BudgetOf(const Config& config) {
-  // On policy only whole rollouts are counted, in lockstep or not.
+  // On policy, only complete rollouts are counted, with or without lockstep.
   const bool phases = config.lockstep && !LearnsOnPolicy(config);
   return phases ? LockstepEnvSteps(config) : static_cast<uint64_t>(config.env_steps);
 }

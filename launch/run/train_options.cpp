@@ -16,7 +16,7 @@ namespace {
 
 // The preset that a configuration file names.
 struct FilePreset {
-  std::string name;    // empty if it names none
+  std::string name;    // empty if the file names none
   bool whole = false;  // a resolved configuration, which contains every key of its preset
 };
 
@@ -43,7 +43,7 @@ FilePreset ChoosePreset(const TrainOptions& options) {
 Config GivenConfig(const TrainOptions& options, const EnvironmentDefaults& defaults) {
   auto [preset, whole] = ChoosePreset(options);
   if (preset.empty() && !whole) preset = defaults.preset;
-  // A run's config.json holds every key: it stays what it was, whatever becomes of its preset.
+  // A run's config.json holds every key, so its preset, which may have changed, is not applied.
   Config config;
   if (!whole) ApplyAssignments(defaults.assignments, &config);
   if (!preset.empty() && !whole) {
@@ -58,7 +58,7 @@ Config GivenConfig(const TrainOptions& options, const EnvironmentDefaults& defau
   if (!options.run_name.empty()) ApplyAssignments({"run_name=" + options.run_name}, &config);
   if (!options.run_dir.empty()) ApplyAssignments({"run_dir=" + options.run_dir}, &config);
   if (options.lockstep) config.lockstep = true;
-  // Programs that start later, also of a resumed run, need not stand where this one does.
+  // Absolute paths: processes that start later may have another working directory.
   for (std::string* path : {&config.task_library, &config.model, &config.network.encoder_weights}) {
     if (!path->empty()) *path = std::filesystem::absolute(*path).lexically_normal();
   }

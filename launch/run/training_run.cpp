@@ -39,7 +39,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Wrapped on a terminal.
+// Prints the text; on a terminal, wraps its lines.
 void PrintLines(const std::string& text) {
   std::istringstream in(text);
   for (std::string line; std::getline(in, line);) {
@@ -55,12 +55,12 @@ void PrintDetached(const fs::path& run) {
       getpid(), run.string(), run.string());
 }
 
-// The address at which the processes of the run find its servers, and their credentials.
+// The address of the run's servers and the folder of its credentials.
 ClusterAddress AddressOf(const TrainOptions& options, const RunRequest& request) {
   ClusterAddress address;
   if (!request.hosts.address.empty()) address.host = request.hosts.address;
   if (!options.secure.empty()) {
-    // Absolute: every process of the run reads it from cluster.json.
+    // Absolute, because every process of the run reads the path from cluster.json.
     address.secure = fs::absolute(options.secure).lexically_normal();
   } else if (request.resumed()) {
     address.secure = FormerSecurity(request.folder->path());
@@ -68,7 +68,7 @@ ClusterAddress AddressOf(const TrainOptions& options, const RunRequest& request)
   return address;
 }
 
-// Refuses what threads of one process cannot have.
+// Refuses options that require separate processes.
 void CheckInProcess(bool hosts, bool secured) {
   const auto refuse = [](const char* what, const char* why) {
     throw UsageError("--in-process: not with {}: {}", what, why);
@@ -86,8 +86,8 @@ void WriteStartFiles(const fs::path& run, const ClusterAddress& address, RunRequ
   WriteClusterAddress(run, address);
 }
 
-// Trains in `folder` until the run ends, and judges it. `detachment` is null when the run stays
-// with this terminal.
+// Trains in `folder` until the run ends, then evaluates it. `detachment` is null if the run stays
+// in the foreground.
 int Start(RunRequest request, const RunFolder& folder, const TrainOptions& options, link::Hub& hub,
           const ClusterAddress& address, Detachment* detachment) {
   const fs::path& path = folder.path();
@@ -143,8 +143,8 @@ int Start(RunRequest request, const RunFolder& folder, const TrainOptions& optio
   return exit_code;
 }
 
-// Resolve, check, claim, start. A refusal leaves nothing behind: the folder of a fresh run is made
-// once everything else has succeeded.
+// Resolves, checks and starts the run. The folder of a fresh run is created last, so a refusal
+// leaves no files.
 int Train(const TrainOptions& options, Detachment* detachment) {
   CheckOpenFiles();
   RunRequest request = options.resume.empty() ? ResolveFresh(options) : ResolveResumed(options);
@@ -156,7 +156,7 @@ int Train(const TrainOptions& options, Detachment* detachment) {
     throw UsageError("--in-process: not with env.id: the environment runs in processes of its own");
   }
   CheckRequest(options, &request);
-  // A resumed run had a domain before, so its dry run does not claim one.
+  // The dry run of a resumed run claims no DDS domain, because the run had one before.
   if (options.dry_run && request.resumed()) return 0;
   ClusterAddress address = AddressOf(options, request);
   if (options.in_process) {
@@ -186,7 +186,7 @@ int RunTraining(const TrainOptions& options) {
     SuspendWithChildren();
     return Train(options, nullptr);
   }
-  Detachment detachment;  // before there are threads
+  Detachment detachment;  // forks, so it precedes all threads
   return detachment.IsChild() ? Train(options, &detachment) : detachment.exit_code();
 }
 

@@ -9,7 +9,7 @@
 namespace shoal::launch {
 namespace {
 
-constexpr size_t kNamed = 2;  // of the actors that do not work
+constexpr size_t kNamed = 2;  // actors named in a message
 
 std::string Describe(const DownProcess& process) {
   const std::string next = process.restart_in
@@ -32,7 +32,7 @@ std::string Describe(const std::vector<DownProcess>& down) {
 std::optional<std::string> WorkingActors::Look(const RoleStanding& actors,
                                                std::chrono::seconds patience, SteadyTime now) {
   ever_ |= actors.working > 0;
-  // One that has not died yet may be starting up, or wait for the run's other processes.
+  // An actor that has not died may be starting, or may be waiting for other processes.
   if (actors.down.empty() || std::ssize(actors.down) < actors.processes) {
     without_.Heard(now);
     return std::nullopt;

@@ -13,11 +13,11 @@
 namespace shoal::launch {
 namespace {
 
-// Shares of the time from which on a process counts as held back, or as busy all the time.
+// Shares of the time above which a process counts as held back, or as always busy.
 constexpr double kHeld = 0.2, kBusy = 0.8;
-constexpr double kAllCores = 0.9;  // share of the usable cores in use: there is none to spare
-constexpr double kServers = 1;     // cores of replay server and evaluation where it is not said
-// Times the present progress. Less than this is within what such a prediction misses by.
+constexpr double kAllCores = 0.9;  // share of busy usable cores above which no core is spare
+constexpr double kServers = 1;     // cores of replay server and evaluation if not measured
+// Least predicted speed-up worth advising. Smaller ones are within the error of the prediction.
 constexpr double kWorthAdvising = 1.15;
 
 constexpr std::string_view kActing[] = {"physics", "rendering", "user_code", "conversion",
@@ -25,7 +25,7 @@ constexpr std::string_view kActing[] = {"physics", "rendering", "user_code", "co
 constexpr std::string_view kLearning[] = {"forward", "backward", "optimiser", "weights",
                                           "checkpoint"};
 
-// The largest of the stages; nullptr: the role has none of them.
+// The largest of the stages; null if the role has none of them.
 const StageShare* Largest(const Bottleneck& figures, std::string_view role,
                           std::span<const std::string_view> stages) {
   const StageShare* largest = nullptr;
@@ -67,7 +67,7 @@ std::string AdviseMoreActing(const Bottleneck& figures, const RunResources& reso
                      100 * figures.samples_blocked, most, MoreActing(figures, resources));
 }
 
-// On policy actors and learner take turns. The side that waits less has the longer part.
+// On policy, actors and learner take turns. The side that waits less is the slower one.
 std::string AdviseOnPolicy(const Bottleneck& figures, const RunResources& resources) {
   const double learner_waits = ShareOf(figures, "learner", "waiting_data");
   const double actors_wait = ShareOf(figures, "actor", "weights");
@@ -81,8 +81,8 @@ std::string AdviseOnPolicy(const Bottleneck& figures, const RunResources& resour
          ": the actors could play meanwhile (--set ppo.versions_ahead=1 at the next start).";
 }
 
-// Another division of the cores and how many times the env steps it promises, by where the time of
-// this one went: costs are those of one unit of progress.
+// The best division of the cores and its predicted speed-up. The costs are estimated from the stage
+// times of the present division, per unit of progress.
 struct BetterSplit {
   Split split;
   double gain = 1;
@@ -99,14 +99,14 @@ BetterSplit FindBetterSplit(const Bottleneck& figures, const RunResources& resou
                   .update = 1,
                   .updates_per_env_step = 1,
                   .servers = servers};
-  // Without waiting the present threads would do this much.
+  // Updates of the present threads if they never waited.
   const double possible = 1 / (1 - ShareOf(figures, "learner", "waiting_data"));
   costs.update = UpdatesPerSecond(costs, now.threads) / possible;
   if (!std::isfinite(possible) || costs.env_step <= 0) return {now};
   const Split best =
       BestSplit(costs, {.cores = int(figures.usable), .most_threads = resources.most_threads});
-  // The model has each side work without a break. The waits that keep the present pace below the
-  // model's will be in another division, too.
+  // The model assumes that neither side waits. Waits that keep the present pace below the modelled
+  // one would occur in the other division, too.
   return {.split = best, .gain = PaceOf(costs, best) / PaceOf(costs, now)};
 }
 

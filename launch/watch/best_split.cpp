@@ -9,7 +9,8 @@
 namespace shoal::launch {
 namespace {
 
-// The number of actors that keeps so many threads busy, on the cores that these leave.
+// The number of actors that keeps this number of learner threads busy, at most the cores that the
+// threads leave free.
 int ActorsFor(const CoreCosts& costs, const SplitLimits& limits, int threads) {
   if (limits.actors) return *limits.actors;
   const double busy =

@@ -18,13 +18,13 @@ using nlohmann::ordered_json;
 
 constexpr double kLeastShown = 0.005;
 
-// Stages that run beside the others, on a thread of their own.
+// Stages that run on a separate thread, in parallel to the other stages.
 constexpr std::string_view kBeside[] = {"sending"};
 
-// A stage is counted where it ends, so that a long one may be more than the time that is looked at.
+// A stage is counted when it ends, so the seconds of a long stage may exceed the observed period.
 double ShareOf(double seconds, double of) { return std::min(1.0, seconds / of); }
 
-// `run_seconds`: for which the run was looked at.
+// `run_seconds`: length of the observed period.
 ProcessTimes TimesOf(const std::string& role, const RoleTotals& totals, double run_seconds) {
   ProcessTimes times{.role = role, .processes = totals.processes, .seconds = totals.seconds};
   double named = 0;
@@ -40,7 +40,7 @@ ProcessTimes TimesOf(const std::string& role, const RoleTotals& totals, double r
   return times;
 }
 
-// Replay and learner run as long as the run does; actors come and go.
+// Length of the observed period. Replay server and learner exist for the whole run, actors may not.
 double RunSeconds(const RunTotals& totals, const RoleTotals& role) {
   for (const char* server : {"replay", "learner"}) {
     if (const auto it = totals.find(server); it != totals.end()) return it->second.seconds;

@@ -61,7 +61,7 @@ std::optional<char> LiveTerminal::WaitForKey(std::chrono::milliseconds most) {
 
 void LiveTerminal::Suspend() {
   Leave();
-  raise(SIGTSTP);  // returns once continued
+  raise(SIGTSTP);  // returns after SIGCONT
   Enter();
 }
 

@@ -23,8 +23,8 @@ std::optional<double> FigureOf(const MetricsMessage& report, std::string_view na
   return std::nullopt;
 }
 
-// Whether the report is of another process than those before: on several hosts, or in containers, a
-// successor may well have the number of its predecessor, but it began later.
+// Whether the report is from a new process. On several hosts or in containers a successor can have
+// the pid of its predecessor, but its uptime is shorter.
 bool MetricsView::IsSuccessor(const MetricsMessage& message, const Process& before) {
   if (message.pid != before.newest.pid || message.host != before.newest.host) return true;
   const auto uptime = FigureOf(message, kUptime);

@@ -39,7 +39,7 @@ std::string Evaluation(const std::optional<EvaluationPoint>& e) {
   return e ? fmt::format("at {}: {}", e->env_steps, FormatScore(*e)) : "none yet";
 }
 
-// Score for the plain line: the rate alone, or return and length if the task has no success.
+// Score for the plain line: the success rate, or return and length if the task has no success.
 std::string ShortScore(const std::optional<double>& success, const std::optional<double>& mean,
                        const std::optional<double>& length) {
   if (success) return Percent(success);
@@ -66,13 +66,13 @@ std::string FaultyEpisodes(const ProgressFigures& f, std::string_view before) {
   return fmt::format("{}{} faulty episodes", before, f.faulty_episodes);
 }
 
-// "2500/10000 env steps"; a run may be past its budget, as after `shoal set env_steps`.
+// "2500/10000 env steps". A run can exceed its budget, for example after `shoal set env_steps`.
 std::string StepsOfBudget(const ProgressFigures& f) {
   if (f.env_steps > f.budget) return fmt::format("{} env steps (budget {})", f.env_steps, f.budget);
   return fmt::format("{}/{} env steps", f.env_steps, f.budget);
 }
 
-// The headlines of the updates; "no update yet" before the first.
+// The main figures of the updates; "no update yet" before the first update.
 std::string Headlines(const ProgressFigures& f, std::string_view between) {
   std::string text;
   for (const auto& [name, value] : f.update_figures) {
@@ -139,7 +139,7 @@ Progress::Progress(const std::string& log_file, std::function<void(const std::st
                    bool plain)
     : terminal_(!plain && DrawsInPlace()), on_say_(std::move(on_say)) {
   if (log_file.empty()) return;
-  OpenRegular(log_file, O_WRONLY | O_CREAT | O_APPEND);  // throws where it cannot be written
+  OpenRegular(log_file, O_WRONLY | O_CREAT | O_APPEND);  // throws if the log cannot be written
   log_.open(log_file, std::ios::app);
 }
 
@@ -167,7 +167,7 @@ void Progress::Say(const std::string& line) {
   for (const std::string& row : LinesOnTerminal(line)) std::printf("%s\n", row.c_str());
   std::fflush(stdout);
   if (log_.is_open()) {
-    log_.clear();  // after a write that failed: the disk may have room again
+    log_.clear();  // retry after a failed write: the disk may have room again
     log_ << UtcTimestamp() << ' ' << line << std::endl;
   }
   if (on_say_) on_say_(line);

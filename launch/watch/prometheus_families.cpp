@@ -17,8 +17,8 @@ using prometheus::ClientMetric;
 using prometheus::MetricFamily;
 using prometheus::MetricType;
 
-// A stage's seconds and shares are two families, as are metrics of equal names in several roles
-// one: the first that has a help text gives it.
+// The seconds and the shares of a stage are two families. Metrics of equal names in several roles
+// are one family, with the first help text found.
 MetricFamily Describe(const std::string& name, const Metric* metric) {
   MetricFamily family;
   family.name = "shoal_" + name;

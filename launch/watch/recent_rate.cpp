@@ -8,7 +8,7 @@ std::optional<double> RecentRate::Add(double seconds, double count) {
     seen_.clear();
   }
   seen_.push_back({seconds, count});
-  // The oldest that is kept is the last before the window, so that the window is covered.
+  // Keeps the last sample before the window, so that the samples span the whole window.
   while (seen_.size() > 2 && seconds - seen_[1].seconds >= window_seconds_) seen_.pop_front();
   const double span = seconds - seen_.front().seconds;
   if (span < least_seconds_) return std::nullopt;

@@ -12,7 +12,7 @@ void RecentRun::Add(const RunMoment& moment, RunTotals totals) {
   learned_ = learned_ || moment.updates.value_or(0) > 0;
   if (learned_) steady_pace_ = pace_.Add(moment.seconds, moment.env_steps);
   counted_.push_back({moment.seconds, std::move(totals)});
-  // The oldest that is kept is the last before the window, so that the window is covered.
+  // Keeps the last sample before the window, so that the samples span the whole window.
   const auto covers = [&] {
     return moment.seconds - counted_[1].seconds >= RecentRate::kWindowSeconds;
   };

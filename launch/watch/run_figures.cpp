@@ -109,7 +109,7 @@ void AddOrders(const Config& config, const RunResources& resources, MetricsRepor
 namespace {
 
 constexpr std::string_view kRecent = "recent";
-constexpr double kLookedAt = 30;  // seconds that the shares of a view are of
+constexpr double kLookedAt = 30;  // seconds over which shares are computed
 
 }  // namespace
 

@@ -32,7 +32,7 @@ RunStatus StatusOfExit(const std::string& exit) {
 
 void ReadMeta(const std::filesystem::path& run, RunListing* listing) {
   const std::filesystem::path path = run / kMetaFile;
-  if (!std::filesystem::exists(path)) return;  // it ended, or has not come, before the first one
+  if (!std::filesystem::exists(path)) return;  // not written yet, or ended before
   const json meta = ParseStrictJson(ReadFile(path), path);
   listing->preset = TextOrEmpty(meta, "preset");
   listing->task = TextOrEmpty(meta, "task");
@@ -48,7 +48,7 @@ void ReadMeta(const std::filesystem::path& run, RunListing* listing) {
   listing->final = {NumberOrNothing(meta.at("final_success_rate")),
                     NumberOrNothing(meta.value("final_return_mean", json()))};
   listing->status = StatusOfExit(meta.at("exit").get<std::string>());
-  // Its end was decided, but its coordinator did not live to see it.
+  // The end of the run was decided, but its coordinator died before completing the end.
   if (meta.value("finished", json()).is_null()) listing->status = RunStatus::kDead;
 }
 
@@ -64,7 +64,7 @@ std::string ToTheMinute(std::string time) {
   return time.substr(0, 16);
 }
 
-// Empty where its address is not written yet or not to be read.
+// Empty if the run's address is not written yet or cannot be read.
 std::string PeerOf(const std::filesystem::path& run) try {
   const ClusterAddress address = ReadClusterAddress(run);
   return fmt::format("{}:{}", address.host, dds::OperatePort(address));
@@ -187,7 +187,7 @@ std::string RunListJson(const std::filesystem::path& dir, const std::vector<RunL
          {"problem", text_or_null(run.problem)}});
   }
   const ordered_json object{{"schema", "shoal-runs-1"}, {"run_dir", dir.string()}, {"runs", list}};
-  // Names of folders and texts of files: what is not UTF-8 in them is replaced.
+  // Invalid UTF-8 in names of folders and contents of files is replaced.
   return object.dump(2, ' ', /*ensure_ascii=*/false, ordered_json::error_handler_t::replace);
 }
 

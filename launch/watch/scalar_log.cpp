@@ -23,7 +23,7 @@ std::optional<double> FindScalar(const MetricsMessage& report, std::string_view 
   return i < report.values.size() ? std::optional(report.values[i]) : std::nullopt;
 }
 
-// A list or a map of a key is one text.
+// Lists and maps are written as JSON text.
 tensorboard::HyperParameter ToHyperParameter(const nlohmann::ordered_json& value) {
   if (value.is_boolean()) return value.get<bool>();
   if (value.is_number()) return value.get<double>();
@@ -103,7 +103,7 @@ void ScalarLog::WriteTraining(const MetricsMessage& report, SteadyTime now) {
   for (size_t i = 0; i < report.names.size() && i < report.values.size(); ++i) {
     const learner::Figure* figure = learner::FindFigure(report.names[i]);
     if (figure == nullptr) continue;
-    if (*updates == updates_written_) return;  // the figures are those of the report before
+    if (*updates == updates_written_) return;  // no update since the last report
     Scalar(figure->Tag(), x, report.values[i]);
     any = true;
   }

@@ -11,7 +11,7 @@
 namespace shoal::launch {
 namespace {
 
-// A byte of UTF-8 that goes on with a character.
+// Whether the byte is a continuation byte of UTF-8.
 bool GoesOn(char byte) { return (static_cast<unsigned char>(byte) & 0xC0) == 0x80; }
 
 }  // namespace
@@ -55,7 +55,7 @@ std::vector<std::string> WrapToColumns(std::string_view text, size_t columns, bo
   std::string rest(text);
   while (ColumnsOf(rest) > columns) {
     const std::string fits = CutToColumns(rest, columns);
-    // A space just behind what fits ends the line, too; one of the indent does not.
+    // The line may end at a space directly after the text that fits, but not within the indent.
     size_t end = rest[fits.size()] == ' ' ? fits.size() : fits.rfind(' ');
     const size_t first_word = std::min(rest.find_first_not_of(' '), fits.size());
     const bool at_space = end != std::string::npos && end > first_word;
@@ -91,9 +91,9 @@ void TerminalBlock::Draw(const std::vector<std::string>& lines) {
 }
 
 void TerminalBlock::Erase() {
-  std::printf("\r");  // from behind what was echoed
+  std::printf("\r");  // moves before echoed input
   if (!drawn_.empty()) std::printf("\x1b[%dA", RowsOf(drawn_, SizeOfTerminal().columns));
-  std::printf("\x1b[J");  // and all below
+  std::printf("\x1b[J");  // clears to the end of the screen
   drawn_.clear();
 }
 

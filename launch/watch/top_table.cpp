@@ -18,7 +18,7 @@ namespace {
 
 using Process = MetricsMessage;
 
-// A cell: what is shown and what it is sorted by.
+// A cell: its text, and the number to sort by.
 struct Cell {
   std::string text = "-";
   std::optional<double> number{};
@@ -54,7 +54,7 @@ Cell Rate(const Process& process) {
   for (const auto& [name, unit] :
        {std::pair("env_steps_per_second", "steps"), std::pair("updates_per_second", "updates"),
         std::pair("stored_records_per_second", "records")}) {
-    if (process.role == "coordinator") break;  // its rates are the sums
+    if (process.role == "coordinator") break;  // its rates are the sums of all
     const auto rate = Get(process, name);
     if (rate) return {fmt::format("{:.1f} {}/s", *rate, unit), rate};
   }
@@ -74,8 +74,8 @@ Cell QueueAge(const Process& process) {
   return seconds ? Number(*seconds * 1000, "{:.0f} ms") : Cell();
 }
 
-// Credit: records that may still be sent (actor), batches that were requested (learner) or that
-// wait to be answered (replay).
+// Credit: records that may still be sent (actor), batches requested (learner), or requests for
+// batches that wait for an answer (replay).
 Cell Credit(const Process& process) {
   for (const char* name : {"credit", "requests_outstanding", "requests_waiting"}) {
     if (const auto credit = Get(process, name)) return Number(credit);
@@ -83,7 +83,8 @@ Cell Credit(const Process& process) {
   return {};
 }
 
-// The share of time in which the limiter held a side, and which; for other roles, waiting for it.
+// Replay: the share of time in which the limiter blocked a side, and the side. Actor and learner:
+// the share of time in which they waited.
 Cell Blocked(const Process& process) {
   if (process.role == "replay") {
     const double in = Get(process, "limiter_blocked_insert_share").value_or(0);
@@ -122,7 +123,7 @@ int RoleOrder(const std::string& role) {
 struct Column {
   const char* name;
   Cell (*cell)(const Process&);
-  size_t least;  // width from the start, so that usual figures do not change it
+  size_t least;  // least width; usual figures fit into it
   const char* meaning;
 };
 
@@ -188,7 +189,7 @@ std::vector<Row> SortedRows(const RunViewMessage& view, const TopOrder& order) {
 std::string Rendered(const Row& row, const TopWidths& widths) {
   std::string line;
   for (size_t i = 0; i < row.size(); ++i) {
-    // Text to the left, numbers to the right, the last column as it is.
+    // Aligns text to the left and numbers to the right; the last column has no padding.
     const bool number = row[i].number && i + 1 < row.size();
     if (widths[i] == 0) continue;
     if (i + 1 == row.size()) {
@@ -221,7 +222,7 @@ TopWidths LeastWidths() {
   return widths;
 }
 
-// Sets the widths of columns to 0 until a row fits; the first to go are what `--json` is for.
+// Sets widths of columns to 0 until a row fits, beginning with details that --json shows.
 void LeaveOutColumns(size_t most, TopWidths* widths) {
   constexpr std::string_view kFirstToGo[] = {
       "FILES", "BATCHES", "DATA s 50/90/99", "PID",  "HOST", "DATA AGE 50/90/99", "AGE", "CREDIT",
@@ -304,7 +305,7 @@ std::string TopJson(const RunViewMessage& view) {
                                       {"time", view.time},           {"state", view.state},
                                       {"env_steps", view.env_steps}, {"updates", view.updates},
                                       {"processes", processes},      {"trouble", view.trouble}};
-  // Names come over the network: what is not UTF-8 in them is replaced.
+  // Names are received over the network: invalid UTF-8 in them is replaced.
   return object.dump(2, ' ', /*ensure_ascii=*/false,
                      nlohmann::ordered_json::error_handler_t::replace);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An environment without physics: every number it observes says which episode and step it is of.
+// An environment without physics. Every observed number encodes its episode and step.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,10 +16,10 @@
 
 namespace shoal::actor {
 
-// Frames (2, 4, 4) of bytes 10 * (key % 10) + step; vectors {key % 1000, step}. A step earns the
-// first component of its action and succeeds where that is above 0.5; the distance is 100 - step.
-// Episodes end after `length` steps: terminated, or truncated at an odd key. With `goal_picture`
-// that is of bytes 200 + key % 10.
+// Frames (2, 4, 4) of bytes 10 * (key % 10) + step; vectors {key % 1000, step}. The reward is the
+// first component of the action; a reward above 0.5 is a success; the distance is 100 - step.
+// Episodes end after `length` steps: terminated, or truncated if the key is odd. The goal picture
+// has bytes 200 + key % 10.
 class CountingEnvironment final : public worlds::Environment {
  public:
   static constexpr int kLength = 3;
@@ -66,7 +66,7 @@ class CountingEnvironment final : public worlds::Environment {
   // Whether an episode is faulty at a step, 0 = its reset.
   std::function<bool(uint64_t key, int step)> faulty;
 
-  // Time that it says a user's code took; empty: it is one of Shoal's own.
+  // Reported time of the user's code; empty: the environment is one of Shoal's own.
   std::optional<double> users_share;
 
   double render_seconds() const override { return 0; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Weights of a policy whose output does not depend on what it sees.
+// Weights of a policy whose output does not depend on its input.
 #pragma once
 
 #include <cstring>
@@ -13,8 +13,8 @@
 
 namespace shoal::actor {
 
-// Every parameter is zero but the last layer's biases: `mean` and `raw_log_std`, the number before
-// Eq. 4's tanh, for each action component.
+// All parameters are zero except the last layer's biases: `mean` and `raw_log_std` (the number
+// before the tanh of Eq. 4) for each action component.
 inline ReceivedWeights ConstantPolicy(const NetworkConfig& network, const ObservationSpec& spec,
                                       WeightsVersion version, float mean, float raw_log_std,
                                       uint64_t env_steps = 0) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Acting by a policy as it starts, alone: what an actor spends on it.
+// The cost of inference in an actor, measured alone with an untrained policy.
 #pragma once
 
 #include <memory>
@@ -10,17 +10,18 @@
 
 namespace shoal::bench {
 
-// A policy as it starts, as safetensors.
+// Initial weights of a policy, as safetensors.
 std::string FirstWeights(const RunConfig& run);
 
-// A selector that has these weights and has begun an episode of each environment.
+// A selector with these weights, with an episode begun in each environment.
 std::unique_ptr<actor::ActionSelector> MakeSelector(const RunConfig& run,
                                                     const std::string& weights);
 
-// An action of one environment, of all that an actor has at once; measured for `seconds`.
+// Time per action of one environment if the actions of all environments of an actor are computed
+// together; measured for `seconds`.
 double InferSeconds(const RunConfig& run, const std::string& weights, double seconds);
 
-// The same in CPU time of the calling thread, which other work on the machine does not prolong.
+// The same in CPU time of the calling thread, which does not depend on other load of the machine.
 double InferCpuSeconds(const RunConfig& run, const std::string& weights, double seconds);
 
 }  // namespace shoal::bench

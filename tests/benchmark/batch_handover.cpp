@@ -39,7 +39,7 @@ RunConfig RunOf(int batch) {
   return run;
 }
 
-// The replay server without a ring: whatever is asked for is there.
+// The replay server without a ring: every request can be answered.
 class EmptyReplay {
  public:
   EmptyReplay(const RunConfig& run, const ClusterAddress& address, bool shared)
@@ -56,7 +56,7 @@ class EmptyReplay {
                }),
         requests_(bus_, [this](const SampleRequest& request) { inbox_.OnRequest(request); }) {}
 
-  // CPU seconds from the answer to one request to that to another.
+  // CPU seconds between the answers to the two requests.
   double Serve(uint64_t from, uint64_t to) {
     double start = 0;
     const SteadyTime deadline = Now() + kDeadline;

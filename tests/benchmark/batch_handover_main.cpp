@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// shoal-bench-batches: what a batch costs on its way from replay to learner, through shared memory
-// and over the network of one host, as JSON (schema shoal-bench-1) on stdout. `./run
-// bench-batches`.
+// shoal-bench-batches: cost of passing a batch from replay to learner, through shared memory and
+// over the network of one host, as JSON (schema shoal-bench-1) on stdout. `./run bench-batches`.
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>

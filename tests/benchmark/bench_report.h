@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads files of schema shoal-bench-1 and makes of them what people read: tables, and how two
-// commits compare. Pure functions of texts.
+// Reads files of schema shoal-bench-1 and writes tables and comparisons of two commits. Pure
+// functions of texts.
 #pragma once
 
 #include <optional>
@@ -11,8 +11,8 @@
 
 namespace shoal::bench {
 
-// A row of the file. A limit is one of two: the ratio is meant to be at least `target`, or the
-// figure itself at most `at_most`.
+// A row of the file. It has at most one limit: the ratio should be at least `target`, or the figure
+// at most `at_most`.
 struct ReportedRow {
   std::string stage, unit, against;
   double figure = 0;
@@ -24,10 +24,10 @@ struct Report {
   std::vector<ReportedRow> rows;
 };
 
-// Throws Error naming `source` when the text is no such file.
+// Throws Error naming `source` if the text does not follow the schema.
 Report ParseReport(std::string_view text, const std::string& source);
 
-// The rows, a line each, as a Markdown table.
+// The rows as a Markdown table.
 std::string MarkdownTable(const Report& report);
 
 // One stage of two commits.
@@ -38,8 +38,8 @@ struct Comparison {
   double spread = 0;            // (largest - smallest ratio) / ratio
 };
 
-// Reports of both sides, as many, in the order of the repetitions. Of the rows that all have. CHECK
-// that there are some, of both as many.
+// Compares the rows that all reports have. The reports are in the order of the repetitions. CHECKs
+// that both sides have the same number of reports, at least one.
 std::vector<Comparison> Compare(std::span<const Report> ours, std::span<const Report> theirs);
 
 }  // namespace shoal::bench

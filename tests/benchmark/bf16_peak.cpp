@@ -10,8 +10,8 @@
 namespace shoal::bench {
 namespace {
 
-// More than latency times throughput of the instruction on any CPU, so that no sum waits for
-// itself.
+// More than latency times throughput of the instruction on any CPU, so that no sum waits for its
+// previous result.
 constexpr int kSums = 16;
 constexpr int kLanes = 16;                                  // f32 sums of a register
 constexpr double kBf16Operations = kSums * kLanes * 2 * 2;  // of a round: two products a lane

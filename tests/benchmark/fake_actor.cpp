@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// shoal-fake-actor: the real training actor over environments that cost nothing but time: frames
-// are written, not rendered, and each step takes a fixed span, slept. For measuring what many
-// actors cost the others.
+// shoal-fake-actor: the real training actor with environments that use no CPU time: frames are
+// filled, not rendered, and each step sleeps for a fixed time. Used to measure the cost of many
+// actors for other processes.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <thread>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Processes of one measurement, forked from one that has no threads yet: pipes between them, the
-// DDS domain where they meet, and the run that they play.
+// Processes of one measurement, forked from a process that has no threads yet: pipes between them,
+// their DDS domain, and the configuration of their run.
 #pragma once
 
 #include <fcntl.h>
@@ -20,8 +20,8 @@
 
 namespace shoal::bench {
 
-// Values of one kind from process to process, each whole, also with several writers. Throws Error
-// when the other side has ended.
+// Pipe for values of type T between processes. Writes are atomic, also with several writers. Throws
+// Error if the other side has ended.
 template <class T>
 class Pipe {
   static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= 512);
@@ -38,7 +38,7 @@ class Pipe {
       throw RuntimeError("a process of the measurement has ended");
     }
   }
-  // Waits for as long as it takes.
+  // Waits without a deadline.
   T Read() const {
     T value{};
     if (read(in_.get(), &value, sizeof value) != static_cast<ssize_t>(sizeof value)) {
@@ -46,7 +46,7 @@ class Pipe {
     }
     return value;
   }
-  // Throws Error also when nothing comes within that time.
+  // Also throws Error if nothing is received before the deadline.
   T Read(std::chrono::milliseconds deadline) const {
     pollfd in{.fd = in_.get(), .events = POLLIN, .revents = 0};
     if (poll(&in, 1, static_cast<int>(deadline.count())) <= 0) {
@@ -54,23 +54,23 @@ class Pipe {
     }
     return Read();
   }
-  // Only the other processes write: their end is then the reader's.
+  // Called by a process that only reads: the pipe ends when all other processes have ended.
   void CloseWriter() { out_.Close(); }
 
  private:
   Descriptor in_, out_;
 };
 
-// Runs `body` in a process of its own, which dies with this one; its errors go to stderr after
-// `name`.
+// Runs `body` in a new process that dies with this one. Its errors are written to stderr, prefixed
+// with `name`.
 pid_t Fork(const char* name, const std::function<void()>& body);
 
-// The place of a run on DDS, as it goes through a pipe.
+// The DDS address of a run, in a form that can be sent through a pipe.
 struct Meeting {
   int domain = 0;
   char tag[64] = {};
 };
-// A domain that is free, for processes of the measurement alone.
+// Finds a free domain for the processes of the measurement.
 Meeting FreeMeeting(const TransportConfig& transport);
 ClusterAddress AddressOf(const Meeting& meeting);
 

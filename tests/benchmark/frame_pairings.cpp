@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames drawn in quality native beside the same frames in quality fast.
+// Frames drawn in quality native, compared with the same frames in quality fast.
 #include <fmt/core.h>
 
 #include <memory>
@@ -15,8 +15,8 @@ namespace shoal::bench {
 namespace {
 
 constexpr int kSide = 84;
-// States drawn in turn, as the environments of one actor are. A moving camera sees none twice: they
-// are more than the renderer keeps layers or sight of.
+// States drawn in turn, like the environments of one actor. There are more states than the renderer
+// can cache for a moving camera, so no state is drawn from the cache.
 constexpr uint64_t kFixedStates = 12, kMovingStates = 100;
 constexpr uint64_t kStepsBetween = 4;  // random ones, from one state to the next
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drawing a batch from a ring: beside a plain copy of as many random frames, from a large ring
-// beside a small one, from a ring in a file beside one in memory.
+// Drawing a batch from a ring, compared with a plain copy of the same number of random frames; from
+// a large ring, compared with a small one; from a ring in a file, compared with one in memory.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -137,7 +137,7 @@ class Replays {
   std::unique_ptr<FullReplay> few_, many_, in_file_;
 };
 
-// The same batches by several threads beside one.
+// The same batches drawn by several threads, compared with one thread.
 std::vector<Pairing> ThreadPairings(const std::shared_ptr<Replays>& replays,
                                     const std::string& drawn) {
   std::vector<Pairing> pairings;

@@ -88,7 +88,7 @@ HostSplit BestSplit(const ScaleConstants& constants, const LearnerSpeed& speed, 
   const double actor = constants.actor_rate * kept;
   HostSplit best;
   for (int threads = 1; threads < cores; ++threads) {
-    // Actors on all that is left, of which the replay server takes its share of each step.
+    // Actors use the remaining cores, minus the replay server's share per env step.
     const double made = (cores - threads) * actor / (1 + actor * replay);
     const double learned =
         kScaleBatch * speed.Of(threads) / (constants.update * samples_per_insert);

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many env steps a second one host makes, computed from measured rows: the second table of
-// docs/scale.md.
+// Env steps per second of one host, computed from measured rows: the second table of docs/scale.md.
 //
-// C cores are divided among L learner threads, the replay server, which needs its load of
-// scale_model.h, and actors, which take the rest:
+// C cores are divided among L learner threads, the replay server (with its load of scale_model.h)
+// and actors, which use the rest:
 //
 //   t(L) = min((C - L - replay(t)) * actor_rate * kept, B * speed(L) / (update * S))
 //
-// with S samples per insert, batches of B, speed(L) the updates of L threads per update of one, and
-// `kept` the share of N times one actor that N actors on N cores make. The split with most env
-// steps counts.
+// S: samples per insert. B: batch size. speed(L): updates of L threads per update of one thread.
+// `kept`: rate of N actors on N cores as a share of N times the rate of one actor. The split with
+// the most env steps is chosen.
 #pragma once
 
 #include <map>
@@ -21,15 +20,16 @@
 
 namespace shoal::bench {
 
-// Updates a second of so many learner threads, in those of one.
+// Updates per second of a number of learner threads, relative to one thread.
 class LearnerSpeed {
  public:
-  // Reads a file of schema shoal-scaling-1: rows of network `compact` and batches of 128, the mean
-  // of their efficiencies for each number of threads. Throws Error naming `source` otherwise.
+  // Reads rows of network `compact` with batches of 128 from a file of schema shoal-scaling-1 and
+  // averages their efficiencies for each number of threads. Throws Error naming `source`.
   LearnerSpeed(std::string_view text, const std::string& source);
   explicit LearnerSpeed(std::map<int, double> times);
 
-  // Linear between the numbers that were measured. More threads than those make no more updates.
+  // Interpolates linearly between measured numbers of threads. Beyond the largest one the speed is
+  // constant.
   double Of(int threads) const;
 
  private:
@@ -42,13 +42,13 @@ struct HostSplit {
   double env_steps_per_second = 0;
 };
 
-// CHECK that there are 2 cores at least.
+// CHECKs that there are at least 2 cores.
 HostSplit BestSplit(const ScaleConstants& constants, const LearnerSpeed& speed, double kept,
                     int cores, double samples_per_insert);
 
-// Markdown: the best split of 16, 32, 64 and 128 cores. `kept` is that of the reports' row "N
-// actors of FetchReach with one 84x84 camera, fast, on N cores" with the largest N. Throws Error if
-// there is none.
+// Markdown: the best split of 16, 32, 64 and 128 cores. `kept` is taken from the row "N actors of
+// FetchReach with one 84x84 camera, fast, on N cores" with the largest N. Throws Error if the
+// reports have no such row.
 std::string HostTable(std::span<const Report> reports, const LearnerSpeed& speed);
 
 }  // namespace shoal::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cost that Shoal adds to an env step of Python, in microseconds of one core.
+// The cost that Shoal adds to an env step of a Python environment, in microseconds of one core.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,10 +10,11 @@
 
 namespace shoal::bench {
 
-// One actor of trivial_environment.py, from state and from one 84x84 picture: CPU time of its
-// process for each transition, less the environment's own step and acting, each measured alone.
-// `python` has the package shoal_rl and gymnasium. Of `options`: programs, seconds. Rows of schema
-// shoal-bench-1. Throws Error as MeasureManyActors does.
+// Measures one actor with trivial_environment.py, from state and from one 84x84 picture: CPU time
+// of its process per transition, minus the environment's own step and the inference, which are
+// measured separately. `python` must have the packages shoal_rl and gymnasium. Uses `programs` and
+// `seconds` of `options`. Returns rows of schema shoal-bench-1. Throws Error like
+// MeasureManyActors.
 std::vector<nlohmann::ordered_json> HostedActorRows(const ManyActorsOptions& options,
                                                     const std::string& python, int repetitions);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a second thread of the learner pays: on idle cores, and beside a program that keeps all
-// cores but one busy.
+// The gain of a second learner thread: on idle cores, and with another program that keeps all cores
+// but one busy.
 #include <fmt/core.h>
 
 #include <atomic>
@@ -41,7 +41,7 @@ class TwoAgents {
     const std::unique_ptr<learner::Agent> one, two;
   };
 
-  // Pixels through `encoder`; none: vectors.
+  // Pixels with `encoder`; vectors if it is empty.
   Of& Get(const std::string& encoder, int batch) {
     const std::string name = encoder + std::to_string(batch);
     if (name == name_) return *agents_;

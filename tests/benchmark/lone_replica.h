@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One of N replicas of a SAC agent, run by itself on one thread: what an update costs a replica
-// without waiting for the others.
+// One of N replicas of a SAC agent, run alone on one thread: the cost of an update for one replica
+// without waiting for the other replicas.
 #pragma once
 
 #include <deque>
@@ -22,7 +22,7 @@ class LoneReplica {
   // do one update together.
   LoneReplica(const std::string& encoder, int batch, int replicas);
 
-  // An update of one rank alone. Its parameters soon mean nothing; its cost is that of an update.
+  // An update of one rank alone. The cost is that of a real update; the parameters become useless.
   void Update(
       int rank, const learner::OnStageEnd& on_stage_end = [](learner::UpdateStage) {});
 

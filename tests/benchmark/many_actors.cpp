@@ -53,7 +53,7 @@ RunConfig FakeRun(int actors) {
   return run;
 }
 
-// The coordinator of the run, as far as its processes notice, and what the replay says.
+// Replaces the coordinator for the processes of the run, and receives the replay's reports.
 class Bystander {
  public:
   Bystander(std::unique_ptr<dds::Bus> bus)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many actor processes on one replay server: how soon all are found, what a transition costs.
+// Many actor processes on one replay server: time until all are discovered, cost of a transition.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@
 namespace shoal::bench {
 
 struct ManyActorsOptions {
-  std::filesystem::path programs;  // where shoal-replay and shoal-fake-actor are
+  std::filesystem::path programs;  // folder of shoal-replay and shoal-fake-actor
   std::filesystem::path folder;    // an empty one
   int actors = 4;
   double steps_per_second = 50;  // of each actor
-  double seconds = 10;           // measured, once all are found
+  double seconds = 10;           // measured, after all are found
   // Real actors of this run in place of those that cost nothing but time, and what they act by, as
   // safetensors. Their number is that above.
   std::optional<RunConfig> run{};

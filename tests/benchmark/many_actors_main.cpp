@@ -43,8 +43,8 @@ uint64_t SumOf(const Repetitions& of, uint64_t ManyActorsFigures::*count) {
   return sum;
 }
 
-// The replay's cost of a transition, as a rate: beside that under 16 actors, or under the first
-// number of them.
+// The replay's cost of a transition, as a rate, compared with the rate for 16 actors or, if that
+// was not measured, for the first number of actors.
 Row CostRow(const Repetitions& of, const Repetitions& few) {
   std::vector<double> rates, few_rates, ratios;
   for (size_t i = 0; i < of.size(); ++i) {

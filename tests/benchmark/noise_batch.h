@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A batch of noise that agents of the default task learn from.
+// A batch of noise for agents of the default task.
 #pragma once
 
 #include <type_traits>

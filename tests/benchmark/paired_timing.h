@@ -26,24 +26,24 @@ struct Pairing {
   double units_per_call = 1;
   double target = 0;
   std::function<void()> ours, other;
-  // In place of units_per_call, where only a call shows how many there are: asked after the first.
+  // Returns the units per call if only a call shows them; called after the first call.
   std::function<double()> units{};
-  // In place of `other`: a rate that is a limit by itself, in units per second.
+  // A fixed limit in place of `other`, in units per second.
   double other_rate = 0;
-  // Starts background work, which ends with the result; empty: none.
+  // Starts background work, which ends when the result is destroyed; empty: none.
   std::function<std::shared_ptr<void>()> meanwhile{};
-  // Why it cannot be measured on this machine, which is no fault; empty where it can.
+  // The reason why this machine cannot measure the row (not an error); empty if it can.
   std::string skipped{};
 };
 
 // Each side runs for about `seconds` per repetition; the first, uncounted call of each warms up.
 Row TimePair(const Pairing& pairing, int repetitions, double seconds);
 
-// For an even number of values the mean of the two in the middle; needs at least one value.
+// If the number of values is even, the mean of the two middle ones. Needs at least one value.
 double Median(std::vector<double> values);
 
 nlohmann::ordered_json ToJson(const Row& row);
-// For people: figure, ratio, spread and, where it has a target, whether that is met.
+// One line of text: figure, ratio, spread and, if the row has a target, whether it is met.
 std::string LineOf(const Row& row);
 
 // The measured pairs, one function per room.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One action of a trained policy outside of training, as libshoal-policy computes it: what checks
-// and blocks by name cost beside the network itself.
+// One action of a trained policy outside of training, as libshoal-policy computes it: the cost of
+// checks and of blocks by name, compared with the network itself.
 #include <fmt/core.h>
 
 #include "common/nn/parameter_set.h"

@@ -37,9 +37,9 @@ struct Played {
   bool running = false;
 };
 
-// Physics and rendering of an env step, resets included; nothing else. Of as many environments in
-// turn as an actor has: their models and data do not fit a core's caches together. By the actions
-// of the policy that the actor has: where others drive the arm physics costs another amount.
+// Physics and rendering of an env step, resets included; nothing else. As many environments as an
+// actor has are stepped in turn, because together they exceed a core's caches. The actions are
+// those of the actor's policy, because the cost of physics depends on the actions.
 double StepSeconds(const RunConfig& run, const std::string& weights, double seconds) {
   const auto render = worlds::MakeRenderContext(run.config.observation);
   const auto selector = MakeSelector(run, weights);
@@ -72,7 +72,7 @@ ManyActorsFigures Measure(ManyActorsOptions options, int actors) {
   return MeasureManyActors(options);
 }
 
-// Figure and what it is held to, repetition by repetition.
+// The figure and its limit, for each repetition.
 struct Pairs {
   std::vector<double> figures, against;
 
@@ -99,8 +99,8 @@ struct Pairs {
   }
 };
 
-// Env steps a second of that many threads which act, step and render and send nothing: what the
-// cores, their caches and memory give when they are busy together.
+// Env steps per second of a number of threads that act, step and render but do not send: the
+// capacity of cores, caches and memory under common load.
 double UnsentStepsPerSecond(const RunConfig& run, const std::string& weights, double seconds,
                             int count) {
   std::vector<double> each(static_cast<size_t>(count));
@@ -137,7 +137,7 @@ class QualityRows {
     const double send = 1e-6 * Measure(sending_, 1).actor_us_per_transition;
     const ManyActorsFigures alone = Measure(real_, 1);
     const double one = alone.env_steps_per_second;
-    // Less CPU than wall time is waiting; more of it than the parts take is work beside them.
+    // CPU time below wall time means waiting; CPU time above that of the parts is additional work.
     fmt::print(stderr,
                "one actor, {}: {:.0f} us an env step, {:.0f} us of CPU a transition; alone: step "
                "and render {:.0f} us, infer {:.0f} us, send {:.0f} us\n",

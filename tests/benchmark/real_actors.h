@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Env steps a second of real actor processes that act from pixels and send to a real replay server.
+// Env steps per second of real actor processes that act from pixels and send to a real replay
+// server.
 #pragma once
 
 #include <vector>
@@ -9,10 +10,12 @@
 
 namespace shoal::bench {
 
-// FetchReach from one 84x84 camera, in quality `fast` and in `native`: one actor beside
-// 1 / (step + render + infer + send, each alone), N actors on N cores beside N times one, and N
-// threads that send nothing beside N times one of them; then N actors of quality `reference`. Of
-// `options`: programs, seconds. Throws Error as MeasureManyActors does.
+// Measures FetchReach from one 84x84 camera. In the qualities `fast` and `native` it compares
+// - one actor with 1 / (step + render + infer + send), each measured alone,
+// - N actors on N cores with N times one actor,
+// - N threads that send nothing with N times one such thread.
+// Then it measures N actors of quality `reference`. Uses `programs` and `seconds` of `options`.
+// Throws Error like MeasureManyActors.
 std::vector<Row> RealActorRows(const ManyActorsOptions& options, int repetitions);
 
 }  // namespace shoal::bench

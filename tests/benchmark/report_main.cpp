@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// shoal-bench-report: what people read of files of schema shoal-bench-1.
+// shoal-bench-report: tables and comparisons from files of schema shoal-bench-1.
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>

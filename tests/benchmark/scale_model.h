@@ -2,8 +2,8 @@
 // Capacity of one replay server, one learner and one link, computed from measured rows: the tables
 // of docs/scale.md.
 //
-// A run makes `t` transitions a second, of which the learner wants S = replay.samples_per_insert
-// samples each, so t S / B batches. Shares of what there is:
+// A run makes `t` transitions per second. The learner draws S = replay.samples_per_insert samples
+// per transition, which is t S / B batches per second. Loads, as shares of the capacity:
 //
 //   replay    t (intake + S / B (gather + batch_bytes * handover))   of one core
 //   learner   t S / B * update                                       of one core
@@ -30,20 +30,20 @@ struct ScaleConstants {
   double update = 0;                           // of the learner, per batch
 };
 
-// By the rows that shoal-bench, shoal-bench-batches and shoal-bench-actors write. Throws Error
-// naming a row that no report has.
+// Reads the rows that shoal-bench, shoal-bench-batches and shoal-bench-actors write. Throws Error
+// naming the row that is missing.
 ScaleConstants ReadScaleConstants(std::span<const Report> reports);
 
 struct ScaleLoad {
-  double replay = 0, learner = 0, link_in = 0, link_out = 0;  // 1 = all of it
+  double replay = 0, learner = 0, link_in = 0, link_out = 0;  // 1 = full capacity
 };
 
-// `far`: the learner is on another host than the replay.
+// `far`: learner and replay server are on different hosts.
 ScaleLoad LoadOf(const ScaleConstants& constants, double transitions_per_second,
                  double samples_per_insert, bool far);
 
-// Markdown: the constants with their rows, what one of each carries, loads of 16, 100 and 1,000
-// actors and what is exceeded first.
+// Markdown: the constants with their rows, the capacity of one replay server, learner and link, the
+// loads of 16, 100 and 1,000 actors, and the limit that is exceeded first.
 std::string ScaleTables(const ScaleConstants& constants);
 
 }  // namespace shoal::bench

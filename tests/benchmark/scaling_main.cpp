@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// shoal-bench-scaling: how fast N learner threads are, and what the parts of an update cost: a JSON
+// shoal-bench-scaling: speed of N learner threads and cost of the parts of an update, as a JSON
 // line for each network, batch and N (docs/performance_tables.md, "Threads of the learner").
 #include <sys/resource.h>
 

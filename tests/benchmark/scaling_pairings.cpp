@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far an update can be divided among N replicas, whatever the number of cores here: the parts
-// of N replicas one after another on one thread, beside the whole update by one. The ratio is the
-// efficiency of N threads on N cores if they met in no time and read each other's memory for
-// nothing.
+// Limits of dividing an update among N replicas, for any number of cores here: the parts of N
+// replicas run one after another on one thread, compared with the whole update by one replica. The
+// ratio is the efficiency of N threads on N cores without cost of barriers and of access to shared
+// memory.
 #include <fmt/core.h>
 
 #include <memory>

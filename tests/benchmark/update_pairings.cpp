@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// An update beside the oneDNN primitives that it consists of, run alone back to back: what the
-// update costs beyond them is ours. Beside its convolutions alone: how near it is to what the
-// network itself takes. These beside what a core can do at most in bf16: what the machine allows.
+// Compares an update with the oneDNN primitives that it runs, executed back to back: the rest is
+// the cost of Shoal's own code. Compares the update with its convolutions alone, the least cost of
+// the network, and the convolutions with the peak rate of a core in bf16, the limit of the machine.
 #include <fmt/core.h>
 
 #include <functional>
@@ -82,7 +82,7 @@ Pairing PeakPairing() {
           .skipped = WhyNoPeak()};
 }
 
-// The convolutions' arithmetic beside as much of it at the peak.
+// The convolutions, compared with the same number of operations at the peak rate.
 Pairing ConvolutionsPairing(const std::string& stage, const std::function<Traced&()>& get) {
   return {.stage = "convolutions of a " + stage,
           .unit = "GFLOP/s",

@@ -111,8 +111,8 @@ void Learn(const BroadcastOptions& options, const ClusterAddress& address, const
   }
 }
 
-// Loads each version that comes. It acts by the first one: only a policy that has acted has
-// layouts, into which a load then brings the weights, as in a run.
+// Loads each received version. The policy acts once with the first version, because only then it
+// has memory layouts, into which later loads convert the weights, as in a run.
 void Act(const BroadcastOptions& options, const ClusterAddress& address,
          const std::filesystem::path& folder, const Pipe<int>& acting_by) {
   const RunConfig run = RunOf(options);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// shoal-bench-weights: what it costs a host that its learner's weights reach its actors, as JSON
+// shoal-bench-weights: cost of sending a learner's weights to the actors of its host, as JSON
 // (schema shoal-bench-1) on stdout. `./run bench-weights`.
 #include <fmt/core.h>
 

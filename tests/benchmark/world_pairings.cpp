@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kPictureSize = 84, kLargeSize = 480;
 
-// Each pixel the mean of those that it covers, also in part: channels of `from` squared pixels to
-// `to` squared ones.
+// Resizes channels of `from` x `from` pixels to `to` x `to`: each pixel is the mean of the pixels
+// that it covers, including partly covered ones.
 void ShrinkByArea(std::span<const uint8_t> in, int channels, int from, int to,
                   std::vector<uint8_t>* out) {
   out->resize(size_t(channels) * size_t(to) * size_t(to));
@@ -33,8 +33,7 @@ void ShrinkByArea(std::span<const uint8_t> in, int channels, int from, int to,
   }
 }
 
-// One environment stepped for ever with a fixed action. Frames of another size than 84x84 are
-// brought to it.
+// One environment stepped for ever with a fixed action. Frames of other sizes are resized to 84x84.
 class Stepper {
  public:
   Stepper(const std::string& task, const std::vector<std::string>& cameras,

@@ -9,19 +9,19 @@
 
 namespace shoal {
 
-// A command of a block, or a line of a transcript that begins with "$ ". Lines that go on (a
-// backslash at the end, an open quote, a loop until its done) are one command. Comments that stand
-// alone are none.
+// A command of a block, or a line of a transcript that begins with "$ ". Continued lines (a
+// backslash at the end, an open quote, a loop until its `done`) form one command. Comment lines are
+// skipped.
 struct Command {
   int line = 0;
   std::string text;  // as written, in one or several lines
 };
 
-// Those of one block that shells are shown in: ```sh, or a transcript. None of other blocks.
+// The commands of a ```sh block or a transcript; empty for other blocks.
 std::vector<Command> CommandsOf(const Block& block);
 
-// The calls of Shoal's own programs in a text: {"shoal", "train", "--preset", ...}, the words
-// up to the end of the command, without the folder before the program; `./run top` is shoal's.
+// The calls of Shoal's programs in a text, as words: {"shoal", "train", "--preset", ...}. The
+// folder of the program is removed; `./run top` counts as a call of shoal.
 std::vector<std::vector<std::string>> OwnCalls(const std::string& text);
 
 }  // namespace shoal

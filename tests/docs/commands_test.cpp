@@ -129,7 +129,7 @@ TEST(DocsCommands, WhatIsNotThereIsNamed) {
   EXPECT_EQ(calls, 6u);
 }
 
-// A block that shows commands says so: those of other blocks would not be looked at.
+// Blocks with commands must be marked as such, because commands in other blocks are not tested.
 TEST(DocsCommands, BlocksThatBeginWithACommandAreMarkedAsShell) {
   std::vector<std::string> unmarked;
   for (const Page& page : ReadPages(SourcePath(""))) {

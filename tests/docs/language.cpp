@@ -48,7 +48,7 @@ bool IsText(const fs::path& file) {
                                                     ".js", ".md",    ".proto", ".py",  ".sh"};
   static const std::set<std::string> kNames = {"CMakeLists.txt", "run"};
   const std::string path = file.string();
-  // The rules, their tests and their page quote what they forbid.
+  // The rules, their tests and their page quote forbidden words.
   return !path.starts_with("tests/docs/language") && path.find("plain-english") == path.npos &&
          (kExtensions.contains(file.extension()) || kNames.contains(file.filename()));
 }
@@ -115,7 +115,7 @@ class Reader {
     return !is_page_ && Trimmed(line).starts_with(marker_);
   }
 
-  // What follows the marker of a comment, which stands alone or behind code and two spaces.
+  // The text after a comment's marker. A comment begins its line, or follows code and two spaces.
   std::optional<std::string_view> CommentOf(std::string_view line) const {
     if (is_page_) return std::nullopt;
     if (StartsWithComment(line)) return Trimmed(line).substr(marker_.size());

@@ -21,14 +21,14 @@ namespace shoal {
 struct LanguageFault {
   std::string rule;
   int line = 0;      // from 1
-  std::string text;  // what is wrong, in the words of the file
+  std::string text;  // the faulty text
 };
 
 // Faults of one file, by line. `file` is its path from the root; `tree` has all files of the tree.
 std::vector<LanguageFault> LanguageFaultsOf(const std::string& file, std::string_view text,
                                             const std::set<std::string>& tree);
 
-// All files below `root` but those that are built, recorded or generated, as paths from there.
+// All files below `root` except built, recorded and generated ones, as paths relative to `root`.
 std::set<std::string> FilesOf(const std::filesystem::path& root);
 
 // Faults of all texts of the tree, by file.

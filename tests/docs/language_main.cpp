@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// shoal-language [FILE...]: prints the faults of language of the tree, or of files of it.
+// shoal-language [FILE...]: prints the language faults of the given files, or of the whole tree.
 #include <fmt/core.h>
 
 #include <algorithm>

@@ -95,7 +95,7 @@ std::vector<std::string> AnchorsOf(const Page& page) {
     for (const char c : heading.text) {
       const auto byte = static_cast<unsigned char>(c);
       if (c == ' ') anchor += '-';
-      // Letters beyond ASCII stay as they are; signs beyond ASCII are in no heading that is linked.
+      // Letters outside of ASCII are kept. No linked heading has other signs outside of ASCII.
       if (std::isalnum(byte) != 0 || c == '-' || c == '_' || byte >= 0x80) {
         anchor += static_cast<char>(std::tolower(byte));
       }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of a page in Markdown that tests look at. Knows what the pages here use: fenced blocks,
-// also within lists, spans of code, headings with #, links and images in one line.
+// The parts of a Markdown page that tests check. Supports the syntax of Shoal's pages: fenced
+// blocks (also within lists), code spans, headings with #, links and images on one line.
 #pragma once
 
 #include <filesystem>
@@ -33,7 +33,7 @@ Page ParsePage(const std::string& file, const std::string& text);
 // README.md, CHANGELOG.md and every page below docs, by name.
 std::vector<Page> ReadPages(const std::filesystem::path& root);
 
-// The names by which links reach the page's headings, as GitHub makes them.
+// The anchors of the page's headings, as GitHub generates them.
 std::vector<std::string> AnchorsOf(const Page& page);
 
 }  // namespace shoal

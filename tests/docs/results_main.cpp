@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// shoal-results: writes the tables of docs/results.md anew from the figures in docs/results.
+// shoal-results: generates the tables of docs/results.md from the figures in docs/results.
 #include <fmt/core.h>
 
 #include <exception>

@@ -6,9 +6,9 @@
 //
 //   evals     evaluations of `shoal eval --json`, one per seed; FILE#MEMBER is a member of FILE
 //   metas     a meta.json per seed: env steps, wall clock and cores
-//   summary   an experiment's summary.json with `arm`: figures that evals and metas do not give
-//   wall      a meta.json whose wall clock stands for the row instead
-//   cores     cores of a run that was pinned to fewer than its meta.json names
+//   summary   an experiment's summary.json with `arm`: figures that evals and metas do not have
+//   wall      a meta.json whose wall clock is used for the row instead
+//   cores     cores of a run that was pinned to fewer cores than its meta.json says
 #pragma once
 
 #include <filesystem>
@@ -17,12 +17,12 @@
 
 namespace shoal {
 
-// Tables in Markdown, one for each group of table.json in `folder`. Throws Error naming the row if
-// a file is missing or has none of the figures.
+// Markdown tables, one for each group of table.json in `folder`. Throws Error naming the row if a
+// file is missing or has none of the figures.
 std::string ResultsTables(const std::filesystem::path& folder);
 
-// The page with the text between its lines "<!-- results -->" and "<!-- end of results -->"
-// replaced. Throws Error if it has no such lines.
+// Returns the page with the text between the lines "<!-- results -->" and "<!-- end of results -->"
+// replaced. Throws Error if a line is missing.
 std::string WithResults(std::string_view page, std::string_view tables);
 
 }  // namespace shoal

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How an example command of the pages is tried: as it stands, unless a rule says otherwise.
+// Rules for testing the example commands of the pages. Without a matching rule a command runs
+// unchanged.
 #pragma once
 
 #include <string>
@@ -19,12 +20,12 @@ struct TrialRule {
   std::string text;
 };
 
-// In their order: the first of kElsewhere or kNotHere that matches a command takes it, all of
-// kSmaller that match change it.
+// The rules in order. The first matching kElsewhere or kNotHere decides about a command; all
+// matching kSmaller rules change it.
 const std::vector<TrialRule>& TrialRules();
 
-// The command for the shell: the original, a smaller one, or ":". Adds the numbers of the rules
-// that were used to `used`.
+// The command for the shell: the original, a smaller one, or ":". Adds the numbers of the applied
+// rules to `used`.
 std::string Tried(const std::string& command, std::vector<size_t>* used);
 
 }  // namespace shoal

@@ -20,8 +20,8 @@ using testing::IsEmpty;
 
 constexpr std::chrono::seconds kDeadline{400};  // of a machine that has much else to do
 
-// A folder that looks like the repository and holds what the pages' commands find in it: two runs
-// and an experiment of seconds, under every name that the pages have for one.
+// A folder that looks like the repository, with the files that the pages' commands need: two runs
+// and an experiment that take seconds, under every name that the pages use.
 class Surroundings {
  public:
   Surroundings() {

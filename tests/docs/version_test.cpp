@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One version: CMakeLists.txt has it, and changelog, pages, packages and wheel say the same.
+// CMakeLists.txt, changelog, pages, packages and wheel must have the same version.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

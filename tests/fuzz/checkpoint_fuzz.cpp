@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Checkpoints: any bytes are refused with Error or are whole. First byte:
-//   0  the rest is state.json beside two files of a real checkpoint
-//   1  the rest is learner.safetensors; state.json is made to fit it, so that the checksums do not
-//      keep the input from the reader behind them
-//   2  the rest is a policy as an actor gets it over the wire
+//   0  the rest is state.json; two other files are those of a real checkpoint
+//   1  the rest is learner.safetensors; state.json gets matching checksums, so that the input is
+//      read
+//   2  the rest is a policy as sent to an actor
 //   3  the rest is policy.json
 #include <algorithm>
 #include <nlohmann/json.hpp>

@@ -18,15 +18,15 @@ inline std::string Text(const uint8_t* data, size_t size) {
   return {reinterpret_cast<const char*>(data), size};
 }
 
-// Ends the process unless the message of a refusal is one line with something in it.
+// Ends the process unless the error message is one non-empty line.
 void CheckOneLine(std::string_view message);
 
-// Hands `read` the first byte and the text behind it; an Error that it throws has to be one line.
-// Returns what an entry point returns.
+// Calls `read` with the first byte and the remaining text. An Error that it throws must be one
+// line. Returns the result for libFuzzer.
 int Try(const uint8_t* data, size_t size,
         const std::function<void(uint8_t which, const std::string& bytes)>& read);
 
-// A folder in memory for targets that read files; one per process, removed at its end.
+// A folder in memory for targets that read files; one per process, removed when the process ends.
 const std::filesystem::path& Scratch();
 // Writes a file without fsync.
 void WriteScratch(const std::filesystem::path& file, std::string_view content);

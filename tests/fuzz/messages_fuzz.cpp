@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bulk messages: any bytes are refused or taken apart within their bounds, and what they carry is
-// sorted out by those who get it. First byte: which message; the rest is serialised CDR.
+// Bulk messages: any bytes are either refused or decoded within their bounds, and receivers refuse
+// invalid contents. First byte: the kind of message; the rest is serialised CDR.
 #include <cstring>
 
 #include "actor/acting/weights_inbox.h"

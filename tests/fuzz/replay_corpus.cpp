@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The smoke run: a fuzz target over the files of its corpus, without libFuzzer. A finding is fixed
-// with its input added there.
+// The smoke run: runs a fuzz target on the files of its corpus, without libFuzzer. The input of a
+// fixed finding is added to the corpus.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -22,7 +22,7 @@ int Run(int argc, char** argv) {
     for (const auto& entry : std::filesystem::directory_iterator(argv[i])) {
       const std::string content = shoal::ReadFile(entry.path());
       RunOn(content);
-      // Also cut short and with a flipped bit: cheap, and nothing may come of it either.
+      // Also runs the file cut short and with a flipped bit, which must not fail either.
       for (size_t part = 1; part <= 8; ++part) RunOn(content.substr(0, content.size() * part / 9));
       for (size_t at = 0; at < content.size(); at += std::max<size_t>(1, content.size() / 16)) {
         std::string flipped = content;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The messages that are not bulk: any bytes are refused or taken apart within their bounds, and
-// those who get the message bear with what it says. First byte: which message; the rest is
-// serialised CDR.
+// Messages other than bulk messages: any bytes are either refused or decoded within their bounds,
+// and receivers accept any decoded content. First byte: the kind of message; the rest is serialised
+// CDR.
 #include <unistd.h>
 
 #include <nlohmann/json.hpp>

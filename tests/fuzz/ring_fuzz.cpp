@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Replay files: any bytes are refused with Error, or everything a server does with its ring works
-// on them. First byte: 0 = the rest is the file as it is; else the checks of header, sessions and
-// slots are made to fit first, so that they do not keep the input from the code behind them. The
-// file is cut or filled up to the size that its header wants.
+// Replay files: any bytes are refused with Error, or all operations of a server work on the ring.
+// First byte: 0 = the rest is the unchanged file; otherwise the checksums of header, sessions and
+// slots are corrected first, so that the input reaches the code after the checks. The file is cut
+// or filled to the size in its header.
 #include <cstddef>
 #include <cstring>
 
@@ -31,7 +31,8 @@ T* At(std::string* file, uint64_t offset) {
   return reinterpret_cast<T*>(file->data() + offset);
 }
 
-// Input bytes lie at the start of each part, so that few of them reach every part of a large file.
+// Input bytes are placed at the start of each part, so that a few bytes reach every part of a large
+// file.
 std::string FileWithFittingChecks(const std::string& bytes, const RunConfig& run) {
   const RingGeometry geometry(run.spec, static_cast<uint64_t>(kCapacity));
   std::string file(geometry.total_bytes(), '\0');

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The small files and JSON messages of a run: any bytes are refused with Error or make sense. First
-// byte: which one.
+// The small files and JSON messages of a run: any bytes are refused with Error or are valid. First
+// byte: the kind of file or message.
 #include <nlohmann/json.hpp>
 
 #include "actor/sending/sequence_log.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Input of the page from any client: bytes are refused or valid. First byte: which part.
+// Input of the page from any client: bytes are refused or valid. First byte: the kind of input.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 

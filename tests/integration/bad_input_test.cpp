@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every wrong thing a user can say gets one clear line that names it, and the right exit code.
+// Every wrong input of a user gives one clear line that names the fault, and the right exit code.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The wall clock is set back and forth under a run: it goes on.
+// A run continues while the wall clock is set back and forth.
 #include <gtest/gtest.h>
 
 #include "tests/support/running_training.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A run on two hosts: an actor behind a link of its own trains, through a lossy network, a cut and
-// the death of its remote shell, and the account of its records stays exact.
+// A run on two hosts: an actor on another host takes part in training despite a lossy network, a
+// cut link and the death of its remote shell, and the account of its records stays exact.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -159,7 +159,7 @@ TEST_F(Cluster, CatchesUpAfterSevenSecondsWithoutALinkThatLosesDatagrams) {
   ASSERT_FALSE(WaitForFarRecords(training, first, 500).is_null()) << training.Output();
 
   ASSERT_TRUE(net_.Cut());
-  std::this_thread::sleep_for(seconds(7));  // what is tested: longer than the transport's lease
+  std::this_thread::sleep_for(seconds(7));  // longer than the transport's lease
   ASSERT_TRUE(net_.Join());
 
   const json before = training.reports().Await("actor", kFarActor);

@@ -7,8 +7,8 @@
 namespace shoal {
 namespace {
 
-// The mean return after so many env steps with the preset is at least `least`, and by `margin`
-// above that of doing nothing and of random actions. Returns the final evaluation.
+// Expects that the mean return after this number of env steps with the preset is at least `least`,
+// and exceeds those of no-op and random actions by `margin`. Returns the final evaluation.
 nlohmann::json ExpectReturn(const std::string& preset, const std::string& task, int env_steps,
                             double least, double margin) {
   const LearningResult learned =

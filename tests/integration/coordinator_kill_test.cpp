@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// SIGKILL of the coordinator: its processes store what they have, leave a checkpoint and go; the
-// run goes on with --resume, and its account still balances.
+// After SIGKILL of the coordinator its processes store their records, write a checkpoint and exit.
+// The run continues with --resume, and its account balances.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/prctl.h>
@@ -16,16 +16,15 @@ namespace {
 using nlohmann::json;
 using std::chrono::seconds;
 
-// From the coordinator's death: the lease, the replay's farewell to actors that still send, and a
-// moment for a loaded machine.
+// Time after the coordinator's death: the lease, the replay's last acknowledgements to actors that
+// still send, and a margin for a loaded machine.
 constexpr seconds kLeave = ControlState::kLease + seconds(15);
 
 std::vector<std::string> ResumeCommand(const TrainingRun& run) {
   return {"shoal", "train", "--resume", run.path().string(), "--set", "env_steps=9000"};
 }
 
-// Whether an orphan that this process has inherited ended in order: by itself, or by SIGHUP, which
-// tells it of its parent's death.
+// Whether an adopted orphan ended cleanly: by itself, or by the SIGHUP for its parent's death.
 bool EndedInOrder(pid_t pid) {
   int status = 0;
   EXPECT_EQ(waitpid(pid, &status, 0), pid);
@@ -67,7 +66,7 @@ TEST(CoordinatorKill, ProcessesLeaveInOrderAndAResumeAtOnceWaitsForThemAndGoesOn
 TEST(CoordinatorKill, AStopThatWaitsSaysSo) {
   const TrainingRun run;
   RunningTraining training(run, run.Command({{"env_steps", "1000000"}, {"actors", "1"}}));
-  // The run cannot end meanwhile: its learner does not leave.
+  // The run cannot end in this time, because its learner does not exit.
   const pid_t learner = training.reports().Await("learner").at("pid").get<pid_t>();
   ASSERT_EQ(kill(learner, SIGSTOP), 0);
   launch::ProcessSpec spec;

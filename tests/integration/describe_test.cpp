@@ -53,7 +53,7 @@ TEST(Describe, SaysWhatEachKindOfObservationConsistsOf) {
   }
 }
 
-// The inputs of a preset come from its actors, those of a run from its folder.
+// The inputs of a preset are queried from its actors, those of a run are read from its folder.
 TEST(Describe, ListsWhatThePolicyOfAPresetOrARunGets) {
   const TemporaryFolder folder;
   const auto describe = [&](const std::string& option, const std::string& name) {

@@ -40,8 +40,8 @@ TEST_P(EncoderTraining, UpdatesCheckpointsEvaluatesAndStartsAnother) {
   EXPECT_GT(meta.at("updates").get<int64_t>(), 50);
   EXPECT_EQ(run.Json("eval/final.json").at("aggregate").at("episodes"), 2);
 
-  // Its encoder starts another run's, statistics and all: the first checkpoint's average has hardly
-  // moved from it.
+  // Another run starts from its encoder, including statistics: the average in the first checkpoint
+  // has hardly changed.
   const std::filesystem::path policy = run.path() / "checkpoints/best/policy.safetensors";
   TrainingRun::Keys keys = KeysOf(kind);
   keys["network.encoder_weights"] = policy.string();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Descriptions of Python environments, and the refusal of a changed environment when its run goes
-// on.
+// Descriptions of Python environments, and the refusal to resume a run with a changed environment.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Environments of Python that are refused, fail, hang or print.
+// Python environments that are refused, fail, hang or print.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Environments of Python as actors. The package gymnasium is the tests' own (environments/), so
-// that no network is needed.
+// Actors with Python environments. The package gymnasium is a replacement in environments/, so that
+// no network is needed.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ class Environments : public testing::Test {
   std::string Log(const std::string& process) const {
     return ReadFile(run_.path() / "logs" / (process + ".log"));
   }
-  // Trains an environment whose actors die again and again: the run's error.
+  // Trains an environment whose actors die repeatedly. Returns the run's error.
   std::string FailureOf(const std::string& environment, TrainingRun::Keys keys = {},
                         bool plays = true) const {
     keys["eval.interval"] = "1000000";

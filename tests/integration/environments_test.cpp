@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Environments of Python: trained, judged, filmed, and acted in by a policy.
+// Python environments: training, evaluation, films, and acting with a policy.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -144,8 +144,9 @@ TEST_F(Environments, AnExperimentTrainsOnOneToo) {
 // A policy outside of its run acts as the evaluation did: dicts, pictures, stacks and the bounds of
 // actions are mapped alike.
 TEST_F(Environments, APolicyActsInPythonAsItWasEvaluated) {
-  // Trains an environment a little, evaluates two episodes of it, and acts on their observations
-  // again, by the checkpoint and Python: what act_again.py says.
+  // Trains an environment for a short time, evaluates two episodes, and computes their actions
+  // again from their observations, in Python with the checkpoint. Returns the output of
+  // act_again.py.
   const auto act_again = [this](const std::string& environment, const TrainingRun::Keys& keys) {
     TrainingRun::Keys all{{"env.kwargs", json{{"of", environment}}.dump()},
                           {"env_steps", "400"},

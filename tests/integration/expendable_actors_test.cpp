@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A run goes on without an actor that cannot go on, says so, and takes it back once it can.
+// A run continues without an actor that cannot run, reports this, and restarts the actor later.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ class ExpendableActors : public testing::Test {
   void Crash(const std::string& process) const { WriteFileAtomically(crashes_ / process, ""); }
   void Mend(const std::string& process) const { std::filesystem::remove(crashes_ / process); }
 
-  // The coordinator's next report that says `value` or more of a figure; null if none came.
+  // The coordinator's next report with a figure of at least `value`; null at the deadline.
   static json WaitFor(RunningTraining* training, const char* figure, double value) {
     return training->reports().WaitFor(
         "coordinator", [=](const json& r) { return r.value(figure, -1.0) >= value; }, seconds(90));

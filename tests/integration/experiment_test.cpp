@@ -51,7 +51,7 @@ class ExperimentTest : public testing::Test {
     spec.output = folder_.path() / "said";
     return launch::ChildProcess(spec);
   }
-  // The run's meta.json once it has come so far.
+  // Waits until the run's reports show this number of stored steps.
   bool WaitForSteps(const std::string& run, int64_t env_steps) const {
     for (const SteadyTime end = Now() + seconds(90); Now() < end;) {
       if (fs::exists(out_ / "runs" / run / "metrics.jsonl")) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `shoal export` of a real run's checkpoint, other programs held to what it writes, and a run that
-// starts from it.
+// `shoal export` of a real run's checkpoint: other programs read the exported files, and a run
+// starts from them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares the policies of three short lockstep runs of the real programs with recorded ones:
-// a change that is meant to change no behaviour leaves every bit of the policy as it was.
+// a change that should not change behaviour must not change any bit of the policy.
 //
-// tests/golden/fingerprints.json holds a CRC-32 of each tensor of the policy, per surroundings: the
-// bits depend on what oneDNN and the C library choose for the CPU, on the compiler and on the
-// libraries' versions. In surroundings of which nothing is recorded the test is skipped and says
-// so.
+// tests/golden/fingerprints.json contains a CRC-32 of each tensor of the policy for each platform:
+// the bits depend on the code that oneDNN and the C library choose for the CPU, on the compiler and
+// on the versions of libraries. On a platform without a recording the test is skipped.
 //
-// A change that must change the numbers records them anew, and its commit says which and why:
+// If a change must change the numbers, record them again; the commit message says which and why:
 //   SHOAL_RECORD_FINGERPRINTS=1 ctest --test-dir build/release -R Fingerprint
 #include <fmt/core.h>
 #include <gnu/libc-version.h>
@@ -83,8 +82,8 @@ std::string Surroundings(const nlohmann::json& meta) {
                      gnu_get_libc_version());
 }
 
-// The last one: which is the best depends on the evaluations, and on a loaded machine one may be
-// overtaken by the next.
+// The last checkpoint, because the best one depends on the evaluations, and a loaded machine may
+// skip an evaluation.
 std::filesystem::path LastCheckpoint(const TrainingRun& run) {
   std::filesystem::path last;
   for (const auto& entry : std::filesystem::directory_iterator(run.path() / "checkpoints")) {

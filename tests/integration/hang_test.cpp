@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A process that is there but does nothing any more: noticed, killed, replaced; the account
-// balances.
+// A hanging process is detected, killed and replaced, and the account balances.
 #include <gtest/gtest.h>
 #include <signal.h>
 

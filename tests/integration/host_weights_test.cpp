@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The weights of a run through the real processes: one actor of the host receives them, and when it
-// is killed or stopped the others do not stay behind.
+// Weights in a run of the real processes: one actor of a host receives them. If this actor is
+// killed or stopped, the other actors still get new weights.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -23,7 +23,8 @@ TrainingRun::Keys WeightsKeys() {
           {"replay.samples_per_insert", "2"}};
 }
 
-// Waits until each actor acts by a version after `update`; returns which of them receive.
+// Waits until each actor acts with a version after `update`. Returns the actors that receive
+// weights.
 std::vector<int> ReceiversAfter(RunningTraining* training, double update) {
   std::vector<int> receivers;
   for (int actor = 0; actor < kActors; ++actor) {

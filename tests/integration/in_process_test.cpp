@@ -70,7 +70,7 @@ TEST(InProcess, AnActorThatFailsIsRestartedAndSaysWhy) {
   RunningTraining training(
       run, run.Command({{"env_steps", "1000000"}, {"actors", "2"}}, {"--in-process"}));
   ASSERT_TRUE(training.WaitForSteps(1000)) << training.Output();
-  // The actor finds a session that is no number when it is started again.
+  // The session file contains no number when the actor is started again.
   WriteFileAtomically(run.path() / "sessions" / "actor-1", "damaged");
   const ProgramResult scaled =
       RunProgram({"shoal", "scale", "--run", run.path().string(), "1"}, seconds(20));

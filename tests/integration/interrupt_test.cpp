@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ctrl-C and its like: the end of a program as a shell or another parent sees it.
+// Ctrl-C and other stop signals: the end of a program as seen by a shell or another parent.
 #include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -127,8 +127,8 @@ TEST(Interrupt, AtEveryMomentOfTheStartTheCommandDiesByTheSignal) {
   }
 }
 
-// The words of a command that goes on until it is stopped, and what it says once it has begun;
-// empty where it says nothing before its end.
+// The words of a command that runs until it is stopped, and its output after the start; empty if it
+// prints nothing before its end.
 struct CommandCase {
   std::string name;
   std::vector<std::string> words;

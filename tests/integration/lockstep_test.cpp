@@ -30,8 +30,8 @@ Outcome RunInLockstep(const std::string& seed) {
   return outcome;
 }
 
-// A run with these keys and flags that is interrupted at each of these env steps and resumed ends
-// as `whole`, which is not.
+// A run with these keys and flags that is interrupted and resumed at each of these env steps must
+// end like the uninterrupted run `whole`.
 void ExpectGoesOnBitForBit(const TrainingRun& whole, const TrainingRun::Keys& keys,
                            const std::vector<std::string>& flags,
                            const std::vector<int64_t>& interrupts) {
@@ -82,7 +82,7 @@ TEST(Lockstep, RunningStatisticsRepeatAndGoOnBitForBit) {
   EXPECT_NE(NewestLearnerState(whole).find("encoder.bn1.running_mean"), std::string::npos);
 }
 
-// The updates of the whole run are those of a sum over each env step behind phase 0.
+// The updates of the whole run equal the sum over the env steps after phase 0.
 TEST(Lockstep, AScheduleOfSamplesGoesOnBitForBitAndEndsWhereItShould) {
   const TrainingRun whole;
   ExpectGoesOnBitForBit(whole,
@@ -104,8 +104,8 @@ TEST(Lockstep, AScheduleOfSamplesGoesOnBitForBitAndEndsWhereItShould) {
   EXPECT_EQ(meta.at("updates").get<uint64_t>(), LockstepLastUpdate(config));
 }
 
-// Goal pictures are records of their own, and relabelled goals are frames of stored episodes. Steps
-// are reported once a second, so that what is left after the interrupt has to take seconds.
+// Goal pictures are separate records, and relabelled goals are frames of stored episodes. Steps are
+// reported once per second, so the rest of the run after the interrupt must take seconds.
 TEST(Lockstep, HindsightWithPicturesOfGoalsGoesOnBitForBit) {
   const TrainingRun whole;
   ExpectGoesOnBitForBit(whole,

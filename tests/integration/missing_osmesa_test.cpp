@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A system without OSMesa: an empty file takes the library's place, so that it cannot be opened.
+// A system without OSMesa: an empty file replaces the library, which then cannot be opened.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

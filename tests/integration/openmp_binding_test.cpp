@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenMP variables that a site exports for every program do not put a run on one core.
+// OpenMP variables that a site exports for every program must not bind a run to one core.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -39,7 +39,7 @@ std::string OwnMask() {
   return *masks.begin();
 }
 
-// From now on this process and those that it starts use one core only.
+// Binds this process and its later children to one core.
 void UseOneCore() {
   cpu_set_t set;
   CPU_ZERO(&set);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A running run as those see it who watch it and steer it.
+// Watching and steering a running run.
 #include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ using nlohmann::json;
 using std::chrono::seconds;
 using ::testing::HasSubstr;
 
-// Goes on until it is stopped.
+// Runs until it is stopped.
 const TrainingRun::Keys kLongRun{
     {"env_steps", "10000000"}, {"actors", "1"}, {"eval.interval", "5000"}};
 

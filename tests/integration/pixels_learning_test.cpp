@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SAC from pixels alone, through the real processes: rendering, records, stacks, shifts, encoder,
-// arithmetic in bf16 where the CPU has it, and weights on their way back.
+// arithmetic in bf16 if the CPU has it, and weights for the actors.
 #include <gtest/gtest.h>
 
 #include "tests/support/learning_run.h"

@@ -44,8 +44,8 @@ const std::string& HelpOf(const std::vector<std::string>& commands) {
   return at->second;
 }
 
-// Commands that a source names within its string literals. Prose about Shoal does not count: a
-// word that is no command is one here only if an option follows it.
+// Commands in the string literals of a source. An unknown word counts as a command only if an
+// option follows it, so that prose about Shoal does not count.
 std::vector<Spelled> CommandsIn(const fs::path& file) {
   static const std::regex kLiteral(R"rx("(?:[^"\\\n]|\\.)*")rx");
   static const std::regex kCommand(R"(\bshoal ([a-z]+)((?: [A-Za-z0-9{}=_./-]+)*))");

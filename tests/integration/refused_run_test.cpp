@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs that are refused at their start: one line says why, and nothing was started.
+// Runs that are refused at their start: one line names the reason, and no process is started.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// --resume: goes on where the run was, and says what it could not keep.
+// --resume continues a run and reports what could not be kept.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ void ExpectScalars(const std::filesystem::path& run, size_t starts) {
   }
 }
 
-// Rewrites what the run's files say of the build that made them.
+// Rewrites the build information in the run's files.
 void MakeOfAnotherBuild(const std::filesystem::path& run) {
   for (const auto& entry : std::filesystem::recursive_directory_iterator(run)) {
     if (entry.path().extension() != ".json" || !entry.is_regular_file()) continue;
@@ -58,7 +58,7 @@ void MakeOfAnotherBuild(const std::filesystem::path& run) {
   }
 }
 
-// A newer build goes on with a run, and the run says so.
+// A newer build continues a run, and the run records this.
 TEST(Resume, WithAFileTheReplayGoesOnWithItsContent) {
   const TrainingRun run;
   const ProgramResult first =
@@ -134,7 +134,7 @@ TEST(Evaluation, InterruptedKeepsWhatWasPlayed) {
   spec.output = run.parent() / "out";
   launch::ChildProcess eval(spec);
   const SteadyTime deadline = Now() + std::chrono::seconds(60);
-  // It says how far it is.
+  // `shoal eval` prints its progress.
   const auto plays = [&] {
     const std::string said = ReadFile(spec.output);
     return said.find("played ") != std::string::npos &&

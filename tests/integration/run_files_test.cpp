@@ -126,7 +126,7 @@ TEST(RunFiles, OthersMayReadARunThatIsNotSecured) {
   }
 }
 
-// Every small file of a run, one after the other: the run goes on or says at once what to do.
+// Damages each small file of a run in turn: the run continues, or names a remedy at once.
 TEST(RunFiles, DamagedFilesNeverCostFiveRestarts) {
   const TrainingRun run;
   const ProgramResult first = run.Train({{"env_steps", "1500"},
@@ -198,7 +198,7 @@ TEST(RunFiles, AFifoInPlaceOfAFileIsRefusedAtOnce) {
   }
 }
 
-// Fills what is left of a disk while it lives.
+// Fills the free space of a disk until destruction.
 class Filler {
  public:
   explicit Filler(const fs::path& file) : file_(file) {
@@ -220,7 +220,7 @@ int Occurrences(const std::string& text, const std::string& part) {
   return count;
 }
 
-// A small disk in which a run is to be made, but for what it prints.
+// A small disk for a run; only its output is written elsewhere.
 class RunOnASmallDisk {
  public:
   RunOnASmallDisk() : disk_(run.parent(), "64m") {

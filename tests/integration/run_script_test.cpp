@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `./run train`: what it says of wrong arguments before it builds, and what a build shows.
+// `./run train`: errors for wrong arguments before a build, and the output of a build.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,8 +14,8 @@ using std::chrono::seconds;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-// A checkout whose packages are there and whose tools are scripts: what the test is about is the
-// script alone.
+// A checkout with installed packages and with scripts in place of the tools, so that only the
+// script `run` is tested.
 class RunScript : public testing::Test {
  protected:
   RunScript() {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Batches between the real replay and the real learner in shared memory: they go that way on one
-// host, and over the network where they cannot, and it is said; neither's death leaves anything.
+// Batches from the real replay to the real learner use shared memory on one host. If that is
+// impossible they use the network, which is reported. The death of either process leaves no memory.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -92,8 +92,8 @@ TEST(SharedBatches, WhereTheyDoNotFitTheNetworkIsUsedAndItIsSaid) {
   EXPECT_THAT(Log(run, "learner-0"), HasSubstr("batches come over the network"));
 }
 
-// Imitates another host: the replay's process number means nothing, or another process, to a
-// learner with process numbers of its own.
+// Imitates another host: in the learner's own pid namespace, the replay's pid belongs to no process
+// or to another one.
 TEST(SharedBatches, ALearnerThatCannotOpenThemGetsItsBatchesOverTheNetwork) {
   const std::string apart = std::string("/usr/bin/unshare --pid --fork --kill-child --mount-proc") +
                             (geteuid() == 0 ? "" : " --user --map-root-user");
@@ -123,8 +123,8 @@ TEST(SharedBatches, ALearnerThatCannotOpenThemGetsItsBatchesOverTheNetwork) {
   EXPECT_THAT(Log(run, "replay-0"), HasSubstr("cannot open the shared memory"));
 }
 
-// A killed process's slots go with it; what the other one still maps of them goes with the next
-// batch. Both come back to slots, and no batch and no record is lost.
+// The slots of a killed process are freed at its death, or with the next batch if the other process
+// still maps them. Both processes return to shared memory, and no batch and no record is lost.
 TEST(SharedBatches, DeathsOfReplayAndLearnerLeaveNoneBehind) {
   const TrainingRun run;
   RunningTraining training(run, run.Command(Keys({{"env_steps", "1000000"},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Faults of the machine: no space, no permission, no port, little memory. Each gets one clear line,
-// and files that were whole before stay whole.
+// and complete files stay complete.
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -122,7 +122,7 @@ TEST(Surroundings, TrainingNeedsNoSharedMemory) {
       run.Train({{"env_steps", "2000"}, {"actors", "1"}, {"eval.final_episodes", "0"}});
   ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
   ExpectBalanced(run.Json("meta.json"));
-  // The memory that batches go through is none of its files.
+  // The shared memory of batches is not a file in /dev/shm.
   EXPECT_EQ(ReportReader(run.path()).Last("learner").at("batches_shared"), 1);
 }
 

@@ -31,7 +31,7 @@ std::vector<pid_t> PidsOf(const json& view) {
   return pids;
 }
 
-// Every process is stopped, or none is.
+// Waits until all processes are stopped, or until none is.
 bool WaitUntilStopped(const std::vector<pid_t>& pids, bool stopped) {
   const SteadyTime end = Now() + seconds(30);
   while (Now() < end) {

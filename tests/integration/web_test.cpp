@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `shoal web` beside a real run: the page's figures are those of `shoal top`, and who has the token
-// steers.
+// `shoal web` with a real run: the page shows the figures of `shoal top`, and clients with the
+// token can steer the run.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -23,8 +23,8 @@ using ::testing::HasSubstr;
 const TrainingRun::Keys kLong{
     {"env_steps", "10000000"}, {"actors", "1"}, {"eval.interval", "1000"}};
 
-// Answers of the page about the test's run, `done` of which holds; null, and a failure of the test,
-// when none came in time.
+// Polls the page about the test's run until `done` holds for an answer. Fails the test and returns
+// null at the deadline.
 template <class Done>
 json WaitForAnswer(const PageClient& page, const std::string& path, Done done) {
   const SteadyTime end = Now() + seconds(180);
@@ -39,8 +39,8 @@ json WaitForAnswer(const PageClient& page, const std::string& path, Done done) {
   return {};
 }
 
-// The page's view and the one of `shoal top`, of the same moment, are equal to the letter. Asks for
-// both until they have a moment in common.
+// The views of the page and of `shoal top` must be identical for the same time. Polls both until
+// they have the same time.
 void ExpectTheViewOfTop(const PageClient& page, const TrainingRun& run) {
   std::map<double, json> seen;
   json equal, top;

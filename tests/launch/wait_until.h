@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Waits for what other processes do.
+// Waits for an effect of another process.
 #pragma once
 
 #include <chrono>
@@ -9,7 +9,7 @@
 
 namespace shoal {
 
-// Asks until `condition` holds; false when it did not within ten seconds.
+// Polls until `condition` holds. Returns false after ten seconds.
 template <class Condition>
 bool WaitUntil(Condition condition) {
   const SteadyTime start = Now();

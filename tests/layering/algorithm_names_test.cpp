@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An algorithm is a folder of learner/agent, a line in each of two lists and keys of its own: its
-// name stands nowhere else in the product (docs/decisions/0008).
+// An algorithm consists of a folder of learner/agent, a line in each of two lists, and its keys.
+// Its name does not occur elsewhere in the product (docs/decisions/0008).
 #include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ using ::testing::IsEmpty;
 constexpr char kList[] = "learner/agent/algorithms.cpp";
 const std::set<std::string> kMayName = {
     kList, "common/config/algorithm_kind.cpp",
-    // The schema: sections of keys, their default and what is said of them.
+    // The schema: sections of keys with defaults and descriptions.
     "common/config/config.h", "common/config/config_keys.cpp",
     // The algorithm of old checkpoints, which do not name it.
     "common/checkpoint/checkpoint_files.h"};
@@ -63,8 +63,8 @@ std::string Lower(std::string text) {
   return text;
 }
 
-// The words of a line in lower case, those of kCamelCase and snake_case names too; but for the
-// section of a key: "ppo.epochs", config.ppo.epochs.
+// The words of a line in lower case, including words of kCamelCase and snake_case names. The
+// section of a key is left out: "ppo.epochs", config.ppo.epochs.
 std::set<std::string> WordsOf(const std::string& line) {
   static const std::regex word("[A-Z]?[a-z0-9]+|[A-Z]+(?![a-z])|[A-Z]");
   static const std::regex key("\\.[a-z]");
@@ -77,7 +77,7 @@ std::set<std::string> WordsOf(const std::string& line) {
   return words;
 }
 
-// "FILE:LINE: NAME" for each that stands where it should not.
+// "FILE:LINE: NAME" for each name in a wrong place.
 std::vector<std::string> FindNamed(const fs::path& root) {
   const std::set<std::string> names = AlgorithmsOf(root);
   std::vector<std::string> found;

@@ -45,7 +45,7 @@ TEST(ArchitecturePage, EveryFileThatItNamesIsThere) {
   const std::set<std::string> paths = PathsIn(Page(root));
   EXPECT_GE(paths.size(), 20u) << "are they still written in backticks?";
   for (const std::string& path : paths) {
-    // Those of the commands are named from launch on.
+    // Paths of commands are relative to launch.
     EXPECT_TRUE(fs::exists(root / path) || fs::exists(root / "launch" / path)) << path;
   }
 }

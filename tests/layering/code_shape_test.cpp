@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Size of functions, spelling of names and casts, over the whole tree. clang-tidy looks at the same
-// rules with a compiler, and at names of members, in files that change (./run tidy).
+// Checks size of functions, spelling of names and casts in the whole tree. clang-tidy checks the
+// same rules and names of members with a compiler, in changed files (./run tidy).
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -79,7 +79,7 @@ bool IsArithmeticType(std::string_view text) {
   return std::ranges::find(kTypes, text) != kTypes.end();
 }
 
-// (float) x: a type alone in brackets, and behind it what a cast could be of.
+// (float) x: brackets that contain only a type, followed by a possible operand of a cast.
 std::vector<std::string> CStyleCasts(const std::string& file, std::string_view text) {
   std::vector<std::string> faults;
   const std::vector<SourceToken> tokens = ReadSource(text).tokens;
@@ -87,7 +87,7 @@ std::vector<std::string> CStyleCasts(const std::string& file, std::string_view t
     if (tokens[i].text != "(" || !IsArithmeticType(tokens[i + 1].text)) continue;
     if (tokens[i + 2].text != ")") continue;
     const std::string &before = tokens[i - 1].text, &behind = tokens[i + 3].text;
-    // Parameters without a name stand behind one: int Get(int) const, std::function<void(int)>.
+    // Parameters without a name follow a name: int Get(int) const, std::function<void(int)>.
     if ((tokens[i - 1].IsIdentifier() && before != "return") || before == ">" || before == "]" ||
         before == ")" || before == "*") {
       continue;

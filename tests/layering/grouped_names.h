@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names that collide where the compiler gets several sources of a target as one
-// (docs/decisions/0016): a build with a compiler cache compiles each source alone and does not see
-// them. Checks all sources of a target against each other, as groups have different sizes and
-// change with every new source.
+// Finds names that collide if several sources of a target are compiled as one
+// (docs/decisions/0016). A build with a compiler cache compiles each source alone and does not find
+// them. All sources of a target are compared, because groups have different sizes and change with
+// every new source.
 //
 // Two sources of a target collide in a name of one scope if
 // - both declare it with internal linkage, overloads included; aliases, using-declarations and
-//   macros that say the same are no collision, nor are overloaded operators;
+//   macros with equal contents do not collide, nor do overloaded operators;
 // - both define a type of that name, with or without an unnamed namespace;
-// - one declares it in an unnamed namespace, and the other, or a header that the other includes and
-//   the first does not, in the namespace around;
+// - one declares it in an unnamed namespace, and the other declares it in the enclosing namespace,
+//   itself or in a header that the first does not include;
 // - one declares the constant kName and the other a local constant kName (-Wshadow);
 // - one declares a variable in lower case, internal, and the other uses the name for anything of
 // its

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A header without a source of its own that one file alone includes: its declarations belong into
-// that file, unless they are long.
+// Finds headers without a source that only one file includes. Their declarations belong into that
+// file, unless they are long.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -36,7 +36,7 @@ const std::map<std::string, std::string> kHomes = {
     {"hdf5", "launch/tools/dataset"},
 };
 
-// Stands for a program of others, which knows of Shoal what the documentation says.
+// Represents a third-party program, which uses only what the documentation describes.
 const std::string kStranger = "tests/stock_client";
 
 // Tasks as users write them: their physics halves include the engine.
@@ -46,9 +46,9 @@ const std::vector<std::string> kUsersTasks = {"tests/integration/crashing_point/
 const std::set<std::string> kEmptyNames = {"utils", "util",    "helpers", "helper",
                                            "misc",  "manager", "common"};
 
-// Rooms inside a top folder in their order: each may use those before it. Files of the top folder
-// itself, which puts them together, may use all. A header of the top folder has a place
-// where a room implements it.
+// Rooms of a top folder in their order: each may use the rooms before it. Files in the top folder
+// itself connect the rooms and may use all of them. A header of the top folder is listed if a room
+// implements it.
 const std::map<std::string, std::vector<std::string>> kRooms = {
     {"actor", {"worlds", "hosted", "acting", "sending", "loop", "evaluation"}},
     {"replay_server", {"core", "service"}},
@@ -83,7 +83,7 @@ const std::vector<Ban> kBans = [] {
                   "common/nn/team.h",
                   "its threads are those of replicas",
                   {"learner/agent/replicated_agent.cpp"}});
-  // Roles know the link, and their programs which implementation of it they use.
+  // Roles depend on the link; only their programs choose its implementation.
   for (const char* room : {"actor/acting", "actor/sending", "actor/loop", "actor/evaluation",
                            "replay_server/service", "learner", "learner/rollouts"}) {
     bans.push_back(

@@ -59,7 +59,7 @@ bool SaysItsLicence(const fs::path& file) {
   return false;
 }
 
-// Sources below `root`, by name, and those of them without the line.
+// The number of sources below `root`, and the sources without the line.
 struct Found {
   size_t sources = 0;
   std::vector<std::string> without;

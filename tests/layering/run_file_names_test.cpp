@@ -74,8 +74,9 @@ std::vector<Literal> LiteralsOf(const std::string& line) {
   return literals;
 }
 
-// A file or a schema wherever it is no part of a sentence, with an ending too ("replay.ring.new");
-// a folder, whose name is a word of other meanings as well, as a part of a path: `run / "logs"`.
+// Whether a literal names the file, schema or folder. Sentences do not count. A name may have a
+// suffix ("replay.ring.new"). Names of folders are also ordinary words, so they count only as a
+// part of a path: `run / "logs"`.
 bool Spells(const Literal& literal, const std::string& name) {
   const std::string& text = literal.text;
   if (text.find(' ') != std::string::npos) return false;
@@ -90,7 +91,7 @@ bool Spells(const Literal& literal, const std::string& name) {
   return false;
 }
 
-// "FILE:LINE: NAME" for each that is spelled in the product, but for its homes.
+// "FILE:LINE: NAME" for each name that the product spells outside of its defining files.
 std::vector<std::string> FindSpelled(const fs::path& root, const std::vector<std::string>& names) {
   std::vector<std::string> found;
   for (const char* top : {"actor", "common", "launch", "learner", "replay_server"}) {

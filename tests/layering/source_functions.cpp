@@ -23,8 +23,9 @@ class FunctionReader {
     return i < tokens_.size() ? std::string_view(tokens_[i].text) : std::string_view();
   }
 
-  // Reads up to the end of a declaration, of a function's body, or of what opens a scope: the
-  // declarations of a namespace or of a type are then read like others, and its brace is passed by.
+  // Reads to the end of a declaration, of a function's body, or of the opening of a scope. The
+  // declarations of a namespace or type are then read like others, and its closing brace is
+  // skipped.
   void TakeDeclaration() {
     const size_t begin = at_;
     size_t parameters = 0;  // index of their bracket
@@ -66,7 +67,7 @@ class FunctionReader {
     return is_body;
   }
 
-  // Physical lines of a body but for those within tables and texts.
+  // Physical lines of a body except those within tables and texts.
   int LinesOf(size_t begin, size_t end) const {
     int lines = tokens_[end - 1].line - tokens_[begin].line + 1;
     for (size_t i = begin + 1; i < end; ++i) {

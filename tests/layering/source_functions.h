@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The functions that one source file defines, members included, read without a compiler.
 //
-// Knows the C++ that this tree uses. A lambda belongs to the function around it; one at namespace
-// scope, being the value of a variable, is left out.
+// Supports the C++ that this tree uses. A lambda belongs to the enclosing function; a lambda at
+// namespace scope is a variable's value and is skipped.
 #pragma once
 
 #include <string>

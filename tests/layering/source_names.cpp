@@ -184,7 +184,7 @@ class Reader {
     if (Text(behind) != ";") TakeDeclarators(behind - 1, end);
   }
 
-  // TEST(Suite, Name), MATCHER_P(Name, ...): what they define.
+  // Adds the names that TEST(Suite, Name) or MATCHER_P(Name, ...) define.
   void TakeMacroCall(size_t begin) {
     const std::string first(Text(begin + 2));
     if (Text(begin).starts_with("TEST")) {

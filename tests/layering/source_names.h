@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The names that one source file declares at namespace scope, read without a compiler.
 //
-// Knows the C++ that this tree uses: namespaces, types, functions, variables with one or more
+// Supports the C++ that this tree uses: namespaces, types, functions, variables with one or more
 // declarators, aliases, using-declarations, unscoped enumerators, macros, the tests and matchers
 // that GoogleTest's macros define, and local constants (kName). Other local names, members and
 // specialisations are left out.
@@ -25,7 +25,7 @@ struct SourceName {
   bool is_internal = false;  // in an unnamed namespace, or with internal linkage of its own
   bool is_definition = true;
   int line = 0;
-  std::string text;  // what an alias, an import or a macro stands for
+  std::string text;  // definition of an alias, an import or a macro
 };
 
 std::vector<SourceName> NamesOf(std::string_view source);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A source file as tokens, without comments and preprocessor lines; its macros and includes apart.
+// A source file as tokens without comments and preprocessor lines, and its macros and includes.
 #pragma once
 
 #include <map>
@@ -23,14 +23,14 @@ struct SourceMacro {
 
 struct SourceText {
   std::vector<SourceToken> tokens;    // `>>` is two tokens, as it may close two template lists
-  std::vector<SourceMacro> macros;    // those that are still defined at the end of the file
+  std::vector<SourceMacro> macros;    // macros that are defined at the end of the file
   std::vector<std::string> includes;  // with quotes: "common/base/error.h"
 };
 
 SourceText ReadSource(std::string_view source);
 
-// Identifiers that begin with a small letter, but for kName, and are no members: neither behind
-// `.`, `->` or `::` nor with an underscore at the end. The line is that of their first use.
+// Identifiers in lower case except kName, with the line of their first use. Members are skipped:
+// names after `.`, `->` or `::`, and names with a trailing underscore.
 std::map<std::string, int> FreeNames(const SourceText& text);
 
 }  // namespace shoal

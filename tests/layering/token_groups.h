@@ -12,10 +12,10 @@ namespace shoal {
 bool IsOpeningBracket(std::string_view text);
 bool IsClosingBracket(std::string_view text);
 
-// Index behind the bracket that closes the one at `begin`; the number of tokens if none does.
+// Index after the bracket that closes the one at `begin`; the number of tokens if it is not closed.
 size_t BehindGroup(const std::vector<SourceToken>& tokens, size_t begin);
 
-// Index behind the `>` of the `<` at `begin`; the number of tokens if there is none.
+// Index after the `>` of the `<` at `begin`; the number of tokens if it is not closed.
 size_t BehindAngles(const std::vector<SourceToken>& tokens, size_t begin);
 
 }  // namespace shoal

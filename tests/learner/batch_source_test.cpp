@@ -266,7 +266,7 @@ TEST_F(BatchSourceTest, AReplaysSuccessorMayAnswerInItsOwnMemory) {
   AnswerInSlot(*replay, 1);
   ASSERT_TRUE(source.Next(Now()));
   AnswerInSlot(*replay, 2);
-  replay.reset();  // killed: what it had said stays true
+  replay.reset();  // killed: its last message remains valid
   SlotWriter successor = Replay();
   AnswerInSlot(successor, 3);
   for (uint64_t request = 2; request <= 3; ++request) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The training loop where rollouts take the place of batches.
+// The training loop with rollouts in place of batches.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ TEST_F(OnPolicyLoopTest, GivesNoWeightsBeyondTheBudgetUnlessItIsRaised) {
                          Now());
     };
   });
-  // Restored beyond its budget it gives none until that is raised.
+  // A learner restored beyond its budget trains on no rollout until the budget is raised.
   EXPECT_THAT(sink_.Updates(sink_.weights), ElementsAre(4, 5));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The training loop's surroundings, played: batches made up, messages kept.
+// Test doubles for the training loop: generated batches, recorded messages.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@
 
 namespace shoal::learner {
 
-// Gives batches whose content depends on the request alone; `before` is called before each one.
+// Returns batches whose content depends on the request only; calls `before` before each batch.
 class PlayedBatches final : public BatchStream {
  public:
   PlayedBatches(const RunConfig& run, uint64_t first_request)
@@ -65,7 +65,7 @@ class PlayedBatches final : public BatchStream {
   uint64_t next_;
 };
 
-// Keeps what is sent.
+// Stores sent messages.
 class KeptMessages final : public LearnerSink {
  public:
   struct Sent {
@@ -96,7 +96,7 @@ class KeptMessages final : public LearnerSink {
   bool accept_weights = true, readers_keep_up = true;
   int reject_evaluations = 0;
   std::function<void()> on_evaluation;
-  uint64_t spec_hash = 0, session = 0;  // that every message must carry
+  uint64_t spec_hash = 0, session = 0;  // expected in every message
 
  private:
   bool Keep(const WeightsMessage& m, bool accept, std::vector<Sent>* sent) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The loop with a real, small agent; batches, readers and the coordinator are played by the test.
+// The loop with a real, small agent; the test simulates batches, readers and the coordinator.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ namespace shoal::learner {
 
 inline constexpr uint64_t kTrainingSession = 77;
 
-// An agent whose updates last longer than the second between two reports.
+// An agent whose updates take longer than the second between two reports.
 class SlowAgent final : public Agent {
  public:
   explicit SlowAgent(std::unique_ptr<Agent> agent) : agent_(std::move(agent)) {}
@@ -48,7 +48,7 @@ class SlowAgent final : public Agent {
 
 class TrainingLoopTest : public testing::Test {
  protected:
-  // One learner process: from the newest checkpoint until `stop_after` batches were given.
+  // One learner process, from the newest checkpoint until `stop_after` batches were consumed.
   TrainingLoop::End Train(uint64_t stop_after,
                           const std::function<void(PlayedBatches&)>& script = {}) {
     sink_.spec_hash = run_.spec.Hash();

@@ -282,7 +282,7 @@ TEST_F(TrainingLoopTest, DrainingEndsWhenNoMoreBatchesCome) {
 
 TEST_F(TrainingLoopTest, ADrainedLearnerTrainsNoMoreAndSaysSo) {
   run_.config.replay.samples_per_insert =
-      Schedule::Constant(0);     // no limit: three more batches tell what is stored
+      Schedule::Constant(0);     // no limit: three more batches report stored records
   sink_.reject_evaluations = 2;  // sent in the second pass after draining was over
   sink_.on_evaluation = [this] { Say(RunState::kStopping); };
   Train(1000, [&](PlayedBatches& batches) {

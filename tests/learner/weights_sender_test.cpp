@@ -21,7 +21,7 @@ namespace {
 
 constexpr size_t kFloats = 16'000'000;  // 64 MB
 
-// In use, those that malloc has from the system one by one included.
+// Bytes in use, including blocks that malloc maps individually.
 size_t MemoryInUse() {
   const struct mallinfo2 info = mallinfo2();
   return info.uordblks + info.hblkhd;
@@ -57,7 +57,7 @@ class MeasuringSink final : public LearnerSink {
   size_t payload = 0, memory = 0;
 };
 
-// The transport makes a copy as well: three in all, of which two are there at once.
+// The transport makes another copy: three copies in all, two at the same time.
 TEST(WeightsSender, WhatTheTransportTakesIsTheOnlyCopyThen) {
   for (const nn::Precision precision : {nn::Precision::kF32, nn::Precision::kBf16}) {
     const size_t bytes_each = precision == nn::Precision::kBf16 ? 2 : 4;

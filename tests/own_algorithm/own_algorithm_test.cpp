@@ -128,9 +128,8 @@ ObservationSpec BarSpec() {
   return spec;
 }
 
-// A bandit on pictures: reward -(a - place / 2)^2, every step terminal. A critic that does not see
-// where the bar stands is left with a loss of 25 (E[a^2] / 3 + 1 / 180) = 2.9 at best, three of
-// them with 8.7.
+// A bandit on pictures: reward -(a - place / 2)^2, every step terminal. The least loss of a critic
+// that does not see the bar's place is 25 (E[a^2] / 3 + 1 / 180) = 2.9, that of three critics 8.7.
 TEST(OwnEncoder, LearnsABanditOnPictures) {
   Config config = OwnConfig(Config());
   ApplyAssignments(

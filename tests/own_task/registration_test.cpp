@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The worked example of docs/own_task.md beside the built-in tasks.
+// The worked example of docs/own_task.md, registered in addition to the built-in tasks.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

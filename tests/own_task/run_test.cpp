@@ -91,8 +91,7 @@ TEST(OwnTaskRun, TrainsFromItsOwnCameraWithAThresholdFromJson) {
   }
 }
 
-// Share of 200 episodes that end within the threshold of TrainPoint by a policy that has learned
-// nothing.
+// Share of 200 episodes that end within the threshold of TrainPoint with an untrained policy.
 double UntrainedSuccess(const std::string& policy) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "untrained.json";
@@ -109,9 +108,9 @@ double UntrainedSuccess(const std::string& policy) {
   return 1;
 }
 
-// The whole path of pixels: rendering, records, stacks, shifts, encoder, weights back. Only the
-// picture shows the goal; a policy that does not see it ends within 0.1 m of
-// one goal in twelve.
+// Learning from pixels through all parts: rendering, records, stacks, shifts, encoder, weights.
+// Only the picture shows the goal; a policy that does not see the goal ends within 0.1 m of one
+// goal in twelve.
 TEST(OwnTaskRun, LearnsFromPixelsAlone) {
   const TemporaryFolder folder;
   const ProgramResult result =

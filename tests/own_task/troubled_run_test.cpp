@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole runs of tasks that go wrong (tests/own_task/troubled).
+// Whole runs of faulty tasks (tests/own_task/troubled).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tasks of a user's that go wrong (tests/own_task/troubled), in the environment and the tools.
+// A user's faulty tasks (tests/own_task/troubled), in the environment and the tools.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps everything and searches: what the replay must agree with.
+// A simple reference for the replay: keeps every record and finds records by search.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ struct Oracle {
     uint64_t stored = 0, rejected = 0, after_gap = 0;
   };
 
-  // Deals with a record that was not dealt with before.
+  // Processes a new record.
   void Take(const RecordLayout& layout, uint32_t actor, uint64_t session,
             const std::vector<uint8_t>& bytes, Counts* counts) {
     const RecordHeader& h = RecordLayout::Header(bytes.data());
@@ -52,20 +52,20 @@ struct Oracle {
     ++counts->stored;
   }
 
-  // Goal, reset, steps by their index.
+  // Whether `one` directly precedes `other`: goal, reset, then steps by index.
   static bool Precedes(const RecordHeader& one, const RecordHeader& other) {
     if (other.kind == RecordKind::kReset) return one.kind == RecordKind::kGoal;
     return one.kind != RecordKind::kGoal && one.index + 1 == other.index;
   }
 
-  // The environment's episode, if it is of this session, ends with its newest record.
+  // Ends the environment's episode with its newest record if the episode belongs to this session.
   void Cut(uint32_t actor, uint64_t session, uint32_t env) {
     const uint64_t id = newest.contains(env) ? newest[env] : 0;
     if (id != 0 && all[id - 1].actor == actor && all[id - 1].session == session) ended.insert(id);
   }
 
-  // A server that reads the ring anew knows what is stored there: ends by their flag or by the
-  // environment's next episode, and which episode to go on with by its newest record.
+  // A restarted server knows only the records in the ring. An episode has ended there if its last
+  // record has a flag or a next episode exists; the newest record shows which episode continues.
   void ReadAnew() {
     for (const auto& [env, id] : newest) {
       if ((all[id - 1].header().flags & (kTerminated | kTruncated)) == 0) ended.erase(id);
@@ -85,8 +85,7 @@ struct Oracle {
 
   bool Holds(uint64_t id) const { return id > 0 && id <= all.size() && id + capacity > all.size(); }
 
-  // Ids whose frames make the observation that ends at `id`, newest first; nothing when one is
-  // gone.
+  // Ids of the frames of the observation at `id`, newest first; empty if one was overwritten.
   std::optional<std::vector<uint64_t>> Stack(uint64_t id) const {
     std::vector<uint64_t> ids;
     for (int k = 0; k < stack; ++k) {
@@ -96,8 +95,8 @@ struct Oracle {
     }
     return ids;
   }
-  // The steps of the sample that begins with `id`, oldest first: n_step of them, or those up to a
-  // termination; nothing when `id` is gone or no step, or when the episode has fewer (yet).
+  // The steps of the sample that begins with `id`, oldest first: n_step steps, or the steps up to a
+  // termination. Empty if `id` was overwritten or is no step, or if the episode has fewer steps.
   std::optional<std::vector<uint64_t>> Steps(uint64_t id) const {
     if (!Holds(id) || all[id - 1].header().kind != RecordKind::kStep) return std::nullopt;
     std::vector<uint64_t> ids{id};
@@ -125,7 +124,7 @@ struct Oracle {
   std::vector<Stored> all{};              // id = position + 1
   std::map<uint32_t, uint64_t> newest{};  // by env
   std::set<uint64_t> ended{};             // newest records of episodes that have ended
-  std::set<uint64_t> overwritten_ends{};  // newest records that a server did not find
+  std::set<uint64_t> overwritten_ends{};  // newest records that were overwritten at a restart
 };
 
 }  // namespace shoal::replay

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records whose every byte follows from who made them, so that tests can tell them apart.
+// Records whose bytes are functions of their actor, environment and step, so that tests can
+// distinguish them.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +17,7 @@
 
 namespace shoal::replay {
 
-// Small and odd on purpose: record sizes that are no multiple of anything.
+// Small and odd on purpose, so that record sizes are not multiples of powers of two.
 inline ObservationSpec TinySpec(int stack, int height = 3, int width = 5) {
   ObservationSpec spec;
   spec.task = "Test";
@@ -31,7 +32,7 @@ inline ObservationSpec TinySpec(int stack, int height = 3, int width = 5) {
   return spec;
 }
 
-// The policy sees a picture of the goal in place of its numbers.
+// The policy gets a picture of the goal in place of the goal's numbers.
 inline ObservationSpec WithGoalPicture(ObservationSpec spec) {
   spec.goal_picture = true;
   for (BlockSpec& block : spec.blocks) block.observed &= block.name != "desired_goal";
@@ -59,7 +60,7 @@ inline std::vector<uint8_t> MakeRecord(const ObservationSpec& spec, uint32_t act
                                        uint32_t episode, uint32_t index, uint64_t sequence,
                                        uint8_t flags = 0) {
   const RecordLayout layout(spec);
-  // Records are read through casts to 8-byte fields: vector's memory is aligned for these.
+  // Records are read through casts to 8-byte fields; the memory of a vector is aligned for them.
   std::vector<uint8_t> record(static_cast<size_t>(layout.record_bytes()));
   Random random(HashWords({actor, env, episode, index}));
   RecordHeader& header = RecordLayout::Header(record.data());
@@ -91,9 +92,9 @@ inline std::vector<uint8_t> MakeGoalRecord(const ObservationSpec& spec, uint32_t
   return record;
 }
 
-// Records of an actor session: `envs` environments step in turn, episodes of random length end
-// terminated, half of these by success, or truncated, and begin with a goal record where the spec
-// has a goal picture. Sequences run from 1; the same arguments give the same records.
+// Records of an actor session in which `envs` environments step in turn. Episodes have random
+// lengths and are terminated (half of them by success) or truncated. If the spec has a goal
+// picture, they begin with a goal record. Sequences start at 1; equal arguments give equal records.
 class RecordScript {
  public:
   RecordScript(const ObservationSpec& spec, uint32_t actor, uint64_t session, uint32_t envs = 2,
@@ -150,11 +151,11 @@ class RecordScript {
       flags = static_cast<uint8_t>(flags | (success ? kSuccess : 0));
       where.ended = true;
     }
-    // Session in the episode number: episodes are never used again within a run.
+    // The episode number contains the session, because episode numbers are unique within a run.
     const uint32_t episode = static_cast<uint32_t>(session_ * 1000) + where.episode;
     if (begins && spec_.goal_picture) {
       records_.push_back(MakeGoalRecord(spec_, actor_, env, episode, sequence));
-      return;  // the reset is the environment's next
+      return;  // next record of this environment: the reset
     }
     records_.push_back(MakeRecord(spec_, actor_, env, episode, where.index, sequence, flags));
     ++where.index;

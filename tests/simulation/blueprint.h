@@ -18,11 +18,11 @@ struct Blueprint {
   nn::TensorMap policy;
 };
 
-// Off policy with the ring in a file and with the ring in memory, and on policy. Making one asks
-// the real task and a real agent: once is enough.
+// Three blueprints: off policy with the ring in a file, off policy with the ring in memory, and on
+// policy. Slow, because it creates the real task and a real agent; call it once.
 std::vector<Blueprint> MakeBlueprints();
 
-// The one that a seed runs.
+// The blueprint of a seed.
 const Blueprint& BlueprintOf(uint64_t seed, const std::vector<Blueprint>& blueprints);
 
 }  // namespace shoal::simulation

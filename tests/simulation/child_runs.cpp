@@ -33,8 +33,8 @@ std::string TextOf(const Outcome& outcome, const std::vector<Fault>& faults) {
   return text;
 }
 
-// In the child. The first line of the answer is the summary, the second whether all is well, the
-// third how long the run was.
+// Runs in the child. The lines of the answer are: the summary, whether the run was good, the
+// simulated duration.
 void Answer(const Blueprint& blueprint, uint64_t seed, const std::vector<Fault>& faults,
             bool with_story, const fs::path& folder) {
   const Outcome outcome = Simulate(blueprint, seed, faults, folder / "run");

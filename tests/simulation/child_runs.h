@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Simulated runs in child processes, several at once: each takes the memory of what it killed with
-// it, and one that crashes fails alone.
+// Simulated runs in child processes, several at once. The end of a child frees the memory of its
+// killed processes, and a crash fails only one run.
 #pragma once
 
 #include <cstdint>
@@ -16,25 +16,25 @@ namespace shoal::simulation {
 struct ChildRun {
   uint64_t seed = 0;
   bool good = false;
-  double simulated_seconds = 0;  // 0 of one that crashed
+  double simulated_seconds = 0;  // 0 after a crash
   std::string
       text;  // what was wrong, and the story; of a good run the story where it was asked for
   std::string summary;  // one line
 };
 
-// Runs seeds in the order in which `next` gives them, until it gives 0; `jobs` at once. `done` gets
-// each result on the calling thread, as it comes. `faults` gives a seed's.
+// Runs the seeds that `next` returns, until it returns 0; `jobs` at once. Calls `done` with each
+// result on the calling thread. `faults` returns the faults of a seed.
 void RunInChildren(const std::vector<Blueprint>& blueprints, int jobs, bool with_story,
                    const std::function<uint64_t()>& next,
                    const std::function<std::vector<Fault>(uint64_t seed)>& faults,
                    const std::function<void(const ChildRun&)>& done);
 
-// One of them.
+// Runs one seed.
 ChildRun RunInChild(const std::vector<Blueprint>& blueprints, uint64_t seed,
                     const std::vector<Fault>& faults);
 
-// The numbers of faults in `faults` without which the run does not fail, in order: they are left
-// out one at a time while it still fails.
+// A shorter list of faults that still fails, as indices into `faults`: removes faults one at a time
+// while the run still fails.
 std::vector<size_t> ShortenedSchedule(const std::vector<Blueprint>& blueprints, uint64_t seed,
                                       const std::vector<Fault>& faults);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// An environment that costs a simulation nothing: episodes of a fixed length, a step that takes a
-// fixed span of simulated time. An observation says which one it is: its first two numbers are the
-// episode's and the step's. The reward is the action's first number.
+// A cheap environment for simulations: episodes of fixed length, steps of a fixed simulated
+// duration. The first two numbers of an observation are those of the episode and of the step. The
+// reward is the action's first number.
 #pragma once
 
 #include <algorithm>

@@ -16,9 +16,9 @@ using Kind = Fault::Kind;
 
 constexpr int kMostFaults = 6;
 constexpr int kWindow = 25'000;                   // ms in which they begin
-constexpr int kAtOnce = 1000;                     // ms between two that come at once
+constexpr int kAtOnce = 1000;                     // most ms between two simultaneous faults
 constexpr uint64_t kBusyUsers = 5;                // one seed in so many has further commands
-constexpr uint64_t kMostCommands = 3;             // of these
+constexpr uint64_t kMostCommands = 3;             // further commands
 constexpr uint64_t kLongest = 9, kFarthest = 20;  // doublings: 51 s, 29 hours
 
 struct Weight {
@@ -172,7 +172,7 @@ std::vector<Fault> DrawFaults(uint64_t seed, const Config& config) {
   const size_t count = random.Below(kMostFaults + 1);
   for (size_t i = 0; i < count; ++i) {
     Fault fault = DrawFault(config, random);
-    // One in three follows another at once: what survives each may not survive both.
+    // One in three directly follows another: a run may survive each fault but not both.
     if (i > 0 && random.Below(3) == 0) {
       fault.at = faults[random.Below(i)].at + milliseconds(random.Below(kAtOnce));
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The faults of a simulated run, and their times: values, drawn from a seed.
+// The faults of a simulated run and their times, drawn from a seed.
 #pragma once
 
 #include <chrono>
@@ -13,38 +13,38 @@ namespace shoal::simulation {
 
 struct Fault {
   enum class Kind {
-    kKill,         // SIGKILL; of the coordinator: and the run is resumed after `span`
+    kKill,         // SIGKILL; after that of the coordinator, the run is resumed after `span`
     kPause,        // SIGSTOP, and SIGCONT after `span`
     kStall,        // one thread of the process does not run for `span`
     kSlow,         // for `span` each turn of a thread of the process takes 20 ms
     kPartition,    // the process is cut off from all others for `span`
-    kFullDisk,     // for `span` nothing can be written
+    kFullDisk,     // for `span` all writes fail
     kFailingDisk,  // for `span` one step in three of a write fails
     kClock,        // the wall clock jumps by `span`, which may be negative
     kCommand,      // a user runs `shoal` with `text`: "scale 3"
     kAttach,       // `shoal attach`, and Ctrl-C to it after `span`
-    kSecond,       // a second coordinator asks for the run
+    kSecond,       // a second coordinator tries to open the run
     kInterrupt,    // Ctrl-C
   };
 
   Kind kind = Kind::kKill;
   std::chrono::milliseconds at{0};    // simulated, after the start
-  std::string process{};              // "actor-1", "coordinator"; empty where it is no process's
-  std::chrono::milliseconds span{0};  // as said above
-  std::string text{};                 // of a command; of a coordinator's kill: what follows
+  std::string process{};              // "actor-1", "coordinator"; empty for other faults
+  std::chrono::milliseconds span{0};  // see Kind
+  std::string text{};                 // of a command; after a coordinator's kill: the next event
   uint64_t number = 0;                // chooses the thread of a stall
 
   // "12.345 s: pause actor-1 for 3.000 s"
   std::string Text() const;
 };
 
-// The events that may follow a killed coordinator (Fault::text).
+// Events after a coordinator was killed (Fault::text).
 inline constexpr char kThenResume[] = "resume";
 inline constexpr char kThenOverwrite[] = "overwrite";       // train --overwrite in its place
 inline constexpr char kThenLoseRing[] = "lose the ring";    // its file is removed, then resume
 inline constexpr char kThenCutRing[] = "cut the ring off";  // its file is truncated, then resume
 
-// The faults of a seed, by time.
+// The faults of a seed, sorted by time.
 std::vector<Fault> DrawFaults(uint64_t seed, const Config& config);
 
 }  // namespace shoal::simulation

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Simulated time and threads (common/base/scheduler.h): fibers on one thread of the operating
-// system, of which one runs until it waits. Which fiber runs next is drawn from a seed, so that a
-// simulation repeats, and another seed tries another order.
+// system. A fiber runs until it waits. The next fiber is drawn from a seed, so a simulation is
+// repeatable, and another seed gives another order.
 //
-// Time stands still while a fiber computes, but for kPerLook at each look at the clock, so that a
-// loop that polls the clock ends. When no fiber can run, time moves on to the earliest wake-up.
+// Time does not pass while a fiber computes, except kPerLook for each read of the clock, so that a
+// loop that polls the clock ends. If no fiber can run, time advances to the earliest wake-up.
 //
-// Fibers belong to processes, known by their thread group. A process that is killed never runs
-// again and no destructor of its fibers runs, as after SIGKILL: what they own stays in memory until
-// this program ends. Simulate in a child process that ends.
+// Fibers belong to processes, identified by their thread group. The fibers of a killed process
+// never run again, nor do their destructors, as after SIGKILL. Their memory is not freed before
+// this program ends, so simulate in a child process.
 #pragma once
 
 #include <chrono>
@@ -35,29 +35,29 @@ class FiberScheduler final : public Scheduler {
   FiberScheduler(const FiberScheduler&) = delete;
   FiberScheduler& operator=(const FiberScheduler&) = delete;
 
-  // From outside of fibers: starts the first fiber of a process.
+  // Starts the first fiber of a process. Not called by fibers.
   uint64_t StartIn(ThreadGroup* group, std::function<void()> body);
   // Runs fibers until `until`, or until none is left.
   void RunUntil(SteadyTime until);
 
   // No fiber of the group runs before `time`; wake-ups are kept.
   void Pause(ThreadGroup* group, SteadyTime time);
-  // One of its fibers does not run before `time`: the one that `which` chooses.
+  // One fiber of the group, chosen by `which`, does not run before `time`.
   void Stall(ThreadGroup* group, uint64_t which, SteadyTime time);
-  // Until `time` each turn of one of its fibers takes `turn`.
+  // Until `time`, each turn of a fiber of the group takes `turn`.
   void SlowDown(ThreadGroup* group, SteadyTime::duration turn, SteadyTime time);
   // A number below `count`, from the seed.
   size_t Draw(size_t count) { return random_.Below(count); }
-  // Its fibers are gone, and its descriptors are closed.
+  // Removes the fibers of the group and closes its descriptors.
   void Kill(ThreadGroup* group);
   // Fibers of the group that have not ended.
   int Alive(const ThreadGroup* group) const;
-  // The wall clock jumps.
+  // Moves the wall clock.
   void MoveWallClock(std::chrono::nanoseconds by) { wall_offset_ns_ += by.count(); }
 
-  // The time, for who is outside of fibers.
+  // The time, for callers outside of fibers.
   SteadyTime NowOutside() const { return now_; }
-  // A number that two runs share only if they made the same choices at the same times.
+  // A hash of the choices and their times, for comparing runs.
   uint64_t TraceHash() const { return trace_; }
   uint64_t switches() const { return switches_; }
 
@@ -77,9 +77,9 @@ class FiberScheduler final : public Scheduler {
  private:
   struct Fiber;
 
-  // Gives the processor up until the fiber is runnable again, at `wake` at the latest.
+  // Suspends the fiber until it is runnable again, at `wake` at the latest.
   void Block(SteadyTime wake);
-  // Until a Notify of `condition`, or the deadline: then false.
+  // Waits for a Notify of `condition`. Returns false at the deadline.
   bool WaitFor(const void* condition, SteadyTime deadline);
   // A runnable fiber, or nullptr.
   Fiber* Choose();

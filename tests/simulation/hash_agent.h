@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// An agent whose update is a hash of the batch, which costs little, and whose policy's first action
-// says after how many updates it was made: what is evaluated can be held against what it is called.
-// A batch that changes while the agent reads it, and one whose observations do not follow one
-// another (fake_environment.h), break a promise of the run.
+// A cheap agent whose update is a hash of the batch. The policy's first action encodes the number
+// of updates, so that tests can compare an evaluated policy with its name. The agent reports a
+// broken promise if a batch changes while the agent reads it, or if observations are not
+// consecutive (fake_environment.h).
 #pragma once
 
 #include <fmt/core.h>
@@ -26,13 +26,13 @@ namespace shoal::simulation {
 
 class HashAgent final : public learner::Agent {
  public:
-  // `policy`: as nn::Policy loads them. An update takes `span` of simulated time.
+  // `policy`: tensors as nn::Policy loads them. An update takes `span` of simulated time.
   HashAgent(nn::TensorMap policy, std::chrono::microseconds span, Story& story)
       : policy_(std::move(policy)), span_(span), story_(story) {
     for (auto& [name, tensor] : policy_) std::ranges::fill(tensor.data, 0);
   }
 
-  // The first action of the policy after so many updates, without exploration.
+  // The first action of the policy after this number of updates, without exploration.
   static double ActionAfter(uint64_t updates) { return static_cast<double>(updates) / 10'000; }
 
   learner::UpdateOutcome Update(const BatchView& batch,
@@ -75,7 +75,7 @@ class HashAgent final : public learner::Agent {
   }
 
  private:
-  // Each next observation is the successor of its observation.
+  // Checks that each next observation is the successor of its observation.
   void CheckFollows(const BatchView& batch) const {
     const size_t rows = batch.rows(), size = batch.obs_vector.size() / rows;
     const bool rollout = !batch.continues.empty();

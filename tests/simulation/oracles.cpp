@@ -94,16 +94,16 @@ void Examination::CheckAccount() {
     Break(fmt::format("{} env steps of a budget of {}", meta_.env_steps, budget));
   }
   for (const SessionCounters& session : ReadAccount(run_).sessions) {
-    // A record's predecessor is missing only where records were lost. A learner's successor has
-    // none of those before.
+    // The predecessor of a record is missing only if records were lost. A restarted learner has
+    // none of the earlier records.
     if (LearnsOnPolicy(config_)) break;
     if (session.after_gap == 0 || session.lost > 0 || facts_.cut) continue;
     Break(fmt::format("actor {} session {}: {} records after a gap, and none lost", session.actor,
                       session.session, session.after_gap));
   }
-  // The content of a killed memory is gone. Without a ring, so is what was acknowledged since the
-  // account was written (learner/rollouts/rollout_source.h). A replay server that is killed while
-  // the run stops has no successor that would count what its ring holds.
+  // A ring in memory is lost with its process. Without a ring, so are the records acknowledged
+  // since the account was written (learner/rollouts/rollout_source.h). A replay server that is
+  // killed while the run stops has no successor that counts the records in its ring.
   const bool has_ring = !LearnsOnPolicy(config_) && !facts_.lost && !facts_.cut;
   const bool counted = facts_.last_clean || !facts_.replay_struck;
   const bool remembers = (LearnsOnPolicy(config_) || config_.replay.storage == "file") &&

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The promises of a run, held against what a simulated one left and said.
+// Checks the promises of a run against the files and output of a simulated run.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,13 @@
 
 namespace shoal::simulation {
 
-// Hears what is acknowledged to actors. Its hub has the role of one.
+// Records acknowledgements to actors. Its hub has the role of an actor.
 class Witness {
  public:
   explicit Witness(link::Hub& hub)
       : credits_(hub, [this](const CreditsMessage& message) { Hear(message); }) {}
 
-  // The highest sequence that was acknowledged, by actor and session.
+  // The highest acknowledged sequence, by actor and session.
   using Acknowledged = std::map<std::pair<uint32_t, uint64_t>, uint64_t>;
   const Acknowledged& acknowledged() const { return acknowledged_; }
 
@@ -33,18 +33,19 @@ class Witness {
 
 struct Facts {
   bool struck = false;         // there were faults
-  bool last_clean = true;      // every process left in order in the last session
-  bool overwritten = false;    // another run took the folder
+  bool last_clean = true;      // every process ended cleanly in the last session
+  bool overwritten = false;    // another run replaced the run
   bool cut = false;            // half of the ring was removed
   bool lost = false;           // the ring was removed
   bool unwritten = false;      // a disk failed
   bool replay_struck = false;  // the replay server was killed, or held up for long
-  // Wall clock, s: between, no process left or was held up for long, and no clock jumped.
+  // Wall clock, s: between these times no process ended or was delayed for long, and no clock
+  // jumped.
   double orderly_from = 0, orderly_until = 0;
   Witness::Acknowledged acknowledged;
 };
 
-// Returns one line for each promise that a run which has reached its end does not keep.
+// Returns one line for each broken promise of a run that has reached its end.
 std::vector<std::string> BrokenPromises(const World& world, const Facts& facts);
 
 }  // namespace shoal::simulation

@@ -33,8 +33,8 @@ void ForEachReport(const std::filesystem::path& run, const std::string& role,
 
 double Number(const json& report, const char* name) { return report.at(name).get<double>(); }
 
-// The limiter's cursor, by the counts of steps and samples: the limiter's own one is clamped to the
-// band that it should keep to.
+// The limiter's cursor, computed from the counts of steps and samples, because the limiter's own
+// cursor is clamped to its band.
 class CountedCursor {
  public:
   explicit CountedCursor(const Config& config)
@@ -72,13 +72,13 @@ class CountedCursor {
 
   const double min_size_;
   bool constant_rate_ = true;
-  double uncounted_ = 0;  // env steps before which none count
+  double uncounted_ = 0;  // env steps that are not counted
   double cursor_ = 0, granted_ = 0, sampled_ = 0, rate_ = 0, start_ = 0;
   double uptime_ = std::numeric_limits<double>::infinity();
 };
 
-// One line when the learner dropped a rollout that did not come late, while each actor and the
-// learner was one process.
+// One line if the learner dropped a rollout that was not late, while no actor and no learner was
+// restarted.
 std::optional<std::string> DroppedRollouts(const World& world, const Facts& facts) {
   std::optional<std::string> broken;
   bool orderly = true;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The promises of a run that its reports (metrics.jsonl) show: the limiter keeps to its band, env
-// steps never become fewer, and the learner drops no rollout that it could use.
+// Checks the promises that are visible in the reports of a run (metrics.jsonl): the limiter stays
+// within its band, env steps never decrease, and the learner drops no usable rollout.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace shoal::simulation {
 
-// Returns one line for each promise that the reports of the run do not keep. Throws Error.
+// Returns one line for each promise that the reports show broken. Throws Error.
 std::vector<std::string> BrokenInReports(const World& world, const Facts& facts);
 
 }  // namespace shoal::simulation

@@ -28,9 +28,10 @@ constexpr seconds kTryAgain{3};
 // More sessions than faults can make necessary.
 constexpr int kMostSessions = 40;
 
-// A fault of these kinds may end sessions with an error while it lasts and for so long after it:
-// a process cannot write, or processes do not hear of one another for longer than they wait. So may
-// a ring that was cut off, from that moment on. A full disk ends only a session that begins on it.
+// Faults of these kinds may end sessions with an error during the fault and for this time after it:
+// a process cannot write, or processes get no messages from each other for longer than their
+// timeouts. A ring that was cut off may do so from then on. A full disk ends only sessions that
+// begin on it.
 constexpr seconds kAftermath{60};
 bool MayEndSessions(const Fault& fault) {
   return fault.kind == Kind::kFailingDisk || fault.kind == Kind::kPartition;
@@ -84,8 +85,8 @@ void RunOperator::JudgeExit(const SimulatedProcess& coordinator) {
   }
   if (last_words_.find('\n') != std::string::npos)
     world_.story.Violate("the last words are not one line");
-  // A process that was killed while the run stopped makes the end unclean, and the code 1.
-  // One that was killed while it ended had finished, too.
+  // If a process was killed while the run stopped, the end is unclean and the exit code is 1. A
+  // process that was killed during its own end had finished, too.
   const auto says = [this](const char* text) {
     return last_words_.find(text) != std::string::npos;
   };
@@ -97,11 +98,12 @@ void RunOperator::JudgeExit(const SimulatedProcess& coordinator) {
   const bool stopped = interrupted || (meta.exit == "interrupted" && (code == 0 || unclean));
   // The end is noticed up to a second later.
   const bool full = Now() < disk_full_until_ + seconds(1);
-  // It says so, and a resumed session writes it. An actor that starts while the disk is full cannot
-  // make its counter page, and a run whose actors die six times before one has worked ends by it.
+  // The run reports unwritten files, and a resumed session writes them. An actor that starts on a
+  // full disk cannot make its counter page. If actors die six times before one has worked, the run
+  // ends.
   const bool unwritten = code == kUnwrittenExit || (code == 1 && SaidWhoFailed() && full);
-  // A session may wait for former processes before its first write, or the disk fills up between
-  // its first two.
+  // A session may wait for earlier processes before its first write, or the disk may become full
+  // between its first two writes.
   const bool began_full =
       began_on_full_disk_ || (full && (says(kConfigFile) || says(kClusterFile)));
   const bool troubled = Now() < trouble_until_ || began_full;
@@ -242,7 +244,7 @@ void RunOperator::Do(const Fault& fault) {
   }
 }
 
-// Peers take a process that says nothing for longer than the link's lease for gone.
+// Peers presume a process dead if it is silent for longer than the link's lease.
 void RunOperator::Pause(const Fault& fault, SimulatedProcess& process) {
   process.Pause(fault.span);
   if (fault.span <= link::kLivenessLimit) return;

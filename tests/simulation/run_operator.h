@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The person at a simulated run: starts it, resumes it when its coordinator was killed or it ended
-// early, follows the remedies that refusals name, and lets faults and commands happen.
+// Simulates the user of a run: starts the run, resumes it after the coordinator was killed or the
+// run ended early, follows the advice of error messages, and triggers faults and commands.
 #pragma once
 
 #include <chrono>
@@ -19,18 +19,18 @@ namespace shoal::simulation {
 
 class RunOperator {
  public:
-  // Borrows all of them.
+  // Borrows the arguments.
   RunOperator(const World& world, FiberScheduler& scheduler, SimulatedDisk& disk)
       : world_(world), scheduler_(scheduler), disk_(disk), clients_(world) {}
 
-  // Begins and resumes the run until it has reached its end. Runs in a simulated thread.
+  // Starts and resumes the run until it has reached its end. Runs in a simulated thread.
   void Work();
-  // Lets the faults happen, each at its time. Runs in a simulated thread of its own group.
+  // Triggers each fault at its time. Runs in a simulated thread of a separate group.
   void Strike(const std::vector<Fault>& faults);
 
   // The run has reached its end.
   bool finished() const { return finished_; }
-  // Whether a process did not leave in order in the last session.
+  // Whether all processes ended cleanly in the last session.
   bool last_clean() const { return last_clean_; }
   int sessions() const { return sessions_; }
   // The end of the last fault, its span included.
@@ -39,13 +39,13 @@ class RunOperator {
  private:
   void RunSession(Begin begin);
   void JudgeExit(const SimulatedProcess& coordinator);
-  // Whether the session has said `text` since it began.
+  // Whether the session has printed `text`.
   bool Said(std::string_view text) const;
-  // Whether it has named a process that failed, or a file.
+  // Whether the session has named a failed process or a file.
   bool SaidWhoFailed() const;
-  // Reads meta.json, whose env steps never become fewer.
+  // Reads meta.json and checks that env steps do not decrease.
   launch::RunMeta TakeMeta();
-  // Does what comes before the next session; returns how that begins.
+  // Prepares the next session. Returns how the session begins.
   Begin Prepare();
   Begin NextBegin(Begin wanted);
   void WaitForChildren();
@@ -62,10 +62,10 @@ class RunOperator {
   bool finished_ = false, last_clean_ = true;
   bool began_on_full_disk_ = false;  // the session
   SteadyTime trouble_until_{};       // until then a session may end by itself (MayEndSessions)
-  SteadyTime disk_full_until_{};     // of the full disk that was the last to end
+  SteadyTime disk_full_until_{};     // end of the last full disk
   int sessions_ = 0, rivals_ = 0;
   ptrdiff_t session_begin_ = 0;    // its first line in the story
-  const Fault* killed_ = nullptr;  // what killed the last coordinator
+  const Fault* killed_ = nullptr;  // the fault that killed the last coordinator
   std::string last_words_;
   uint64_t env_steps_ = 0;  // at the end of the last session
   SteadyTime quiet_from_{};

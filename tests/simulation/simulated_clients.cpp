@@ -112,7 +112,7 @@ std::shared_ptr<SimulatedProcess> SimulatedClients::Start(const std::string& wor
 }
 
 int SimulatedClients::Run(const std::string& name, ClientCall* call, uint64_t id, link::Hub& hub) {
-  // They hear what the client hears.
+  // These readers receive the same messages as the client.
   const link::Reader<RunViewMessage> views(hub,
                                            [call](const RunViewMessage&) { call->heard = Now(); });
   std::map<uint64_t, ReplyMessage> replies;

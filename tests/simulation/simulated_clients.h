@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Users at other terminals: `shoal stop`, `set`, `scale` and `attach` with the product's client,
-// over the simulated link. Each must end in time with one of the documented answers.
+// Simulates users in other terminals: `shoal stop`, `set`, `scale` and `attach` with the product's
+// client, over the simulated link. Each command must end in time with a documented answer.
 #pragma once
 
 #include <chrono>
@@ -18,18 +18,18 @@ struct ClientCall {
   std::string verb;
   std::vector<std::string> arguments{};
   SteadyTime begun{};
-  SteadyTime heard{};  // the newest view reached it
+  SteadyTime heard{};  // arrival of the newest view
   // The coordinator that accepted the order; null before.
   std::shared_ptr<SimulatedProcess> answerer{};
-  std::string last{};   // its last line, or what its Error says
+  std::string last{};   // its last line, or its Error's message
   bool failed = false;  // with that Error
   int code = 0;         // its exit code, once it has ended
   bool ended = false;
 };
 
-// When the call must have ended, as far as it is known by now.
+// The deadline of the call, as far as it is known now.
 SteadyTime DeadlineOf(const ClientCall& call);
-// Whether a call may end like this one.
+// Whether the end of the call is documented.
 bool IsDocumented(const ClientCall& call);
 
 class SimulatedClients {
@@ -41,7 +41,7 @@ class SimulatedClients {
   void Begin(const std::string& words);
   // Begins `shoal attach`; Ctrl-C ends it after `span`.
   void Attach(std::chrono::milliseconds span);
-  // Waits for all that have begun. Those that do not end in time are broken promises.
+  // Waits for all commands. A command that does not end in time breaks a promise.
   void WaitForAll();
 
  private:

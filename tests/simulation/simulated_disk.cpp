@@ -10,11 +10,11 @@
 namespace shoal::simulation {
 namespace {
 
-// One step in so many is slow, and takes up to so long.
+// One step in kSlow takes up to kSlowest.
 constexpr uint64_t kSlow = 16;
 constexpr int64_t kSlowest = 30'000;  // us
 
-constexpr uint64_t kFailing = 3;  // one step in so many fails
+constexpr uint64_t kFailing = 3;  // one step in kFailing fails
 
 }  // namespace
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A disk that fails and that a process may die at (common/base/disk_steps.h): full for a while for
-// everybody, or failing for one process; with some steps slow, so that other threads run in
-// between, and a kill leaves a file half written.
+// A disk with faults (common/base/disk_steps.h): full for a time for all processes, or failing for
+// one process. Some steps are slow, so that other threads run in between and a kill can leave a
+// file half written.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace shoal::simulation {
 
-// Only simulated threads meet its faults.
+// The faults affect simulated threads only.
 class SimulatedDisk final : public DiskSteps {
  public:
   explicit SimulatedDisk(uint64_t seed) : random_(seed) { DiskSteps::SetCurrent(this); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The processes of a simulated run: coordinators and what they start, harmed by its faults.
+// The processes of a simulated run: coordinators and their children, subject to the run's faults.
 #pragma once
 
 #include <chrono>
@@ -17,21 +17,21 @@
 
 namespace shoal::simulation {
 
-// One process, its threads and its place on the link. It stays in memory after its end or death, as
-// its fibers may still refer to it.
+// One process, its threads and its place on the link. The object outlives the process, because
+// fibers may still refer to it.
 class SimulatedProcess {
  public:
-  // Borrows scheduler and network. `log_file` gets what the process logs. `outlives_parent`: it
+  // Borrows scheduler and network. `log_file` receives the log. `outlives_parent`: the process
   // gets no signal when the coordinator dies.
   SimulatedProcess(FiberScheduler& scheduler, link::LocalNetwork& network, link::Role role,
                    const std::string& name, const std::string& log_file, bool outlives_parent);
 
-  // Runs `body`, whose result is the exit code, in the first thread of `self`. Errors end it with
-  // the product's one line, in the log, and code.
+  // Runs `body`, whose result is the exit code, in the first thread of `self`. An Error ends the
+  // process with the product's exit code and error line, which is logged.
   static void Start(const std::shared_ptr<SimulatedProcess>& self, const std::string& program,
                     std::function<int(link::Hub&)> body);
 
-  // Each is false when the process has ended.
+  // These functions return false if the process has ended.
   bool Kill();
   bool Pause(std::chrono::milliseconds span);
   bool Stall(uint64_t which_thread, std::chrono::milliseconds span);
@@ -44,9 +44,9 @@ class SimulatedProcess {
   bool outlives_parent() const { return outlives_parent_; }
   ThreadGroup& group() { return group_; }
   const std::optional<launch::ExitStatus>& ended() const { return ended_; }
-  // When it ended; no meaning before.
+  // Time of the end; undefined before.
   SteadyTime ended_at() const { return ended_at_; }
-  // The line of its Error; empty when there was none.
+  // The error line; empty if there was no Error.
   const std::string& last_words() const { return last_words_; }
 
  private:
@@ -74,15 +74,14 @@ class SimulatedProcesses {
 
   // A child of the coordinator. Destruction of the result kills it.
   std::unique_ptr<launch::RunningProcess> StartChild(const launch::ProcessSpec& spec);
-  // A process that is no child of the coordinator; found by its name as others are.
+  // A process that is not a child of the coordinator. Find also finds it by name.
   std::shared_ptr<SimulatedProcess> StartOther(const std::string& name, link::Role role,
                                                const std::string& log_file,
                                                std::function<int(link::Hub&)> body);
 
-  // The newest of that name that has not ended; null for none.
+  // The newest living process of that name; null if there is none.
   std::shared_ptr<SimulatedProcess> Find(const std::string& name) const;
-  // Does what the death of the coordinator does to its children: those that do not outlive it get a
-  // stop signal.
+  // Sends a stop signal to the children that do not outlive the coordinator.
   void OnCoordinatorDeath();
 
  private:

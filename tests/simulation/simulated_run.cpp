@@ -87,8 +87,8 @@ Outcome Simulate(const Blueprint& blueprint, uint64_t seed, const std::vector<Fa
                  const std::filesystem::path& folder) {
   FiberScheduler scheduler(seed, kWallTimeNs);
   SimulatedDisk disk(HashWords({seed, 2}));
-  // A run that does not end leaves hubs, which may not outlive their network, and threads that use
-  // the others: they end with this process, as killed ones do.
+  // A run that does not end leaves hubs, which must not outlive their network, and threads that use
+  // other objects. They end with this process, as killed ones do.
   auto& network = *new link::LocalNetwork(  // NOLINT: see above
       [&](size_t count) { return scheduler.Draw(count); });
   Story story;

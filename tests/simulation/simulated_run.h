@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// One run of the product's own coordinator, replay, learner, evaluation actor and actors on
-// simulated time, with faults, and what was wrong with it afterwards.
+// Runs the product's own coordinator, replay, learner, evaluation actor and actors on simulated
+// time with faults, and reports broken promises.
 //
 // Simulated: clock, threads, link (in memory), processes, failures of the disk, environments, the
-// update, the person who resumes. Real: every file, in a folder of its own.
+// update, the user who resumes. Real: every file, in a separate folder.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@
 namespace shoal::simulation {
 
 struct Outcome {
-  std::vector<std::string> violations;  // one line each; empty: all is as promised
-  std::vector<std::string> story;       // what happened, in plain words
+  std::vector<std::string> violations;  // broken promises, one line each
+  std::vector<std::string> story;       // events, as text
   uint64_t trace = 0;                   // equal for equal runs
   uint64_t switches = 0;
   double seconds = 0;  // simulated
@@ -27,8 +27,8 @@ struct Outcome {
   bool good() const { return violations.empty(); }
 };
 
-// Runs in `folder`, which it makes and leaves. Memory of killed processes is kept until this
-// program ends. Not to be called in a fiber.
+// Creates `folder` and runs in it. Memory of killed processes is not freed before this program
+// ends. Must not be called in a fiber.
 Outcome Simulate(const Blueprint& blueprint, uint64_t seed, const std::vector<Fault>& faults,
                  const std::filesystem::path& folder);
 

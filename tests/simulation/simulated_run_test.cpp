@@ -28,7 +28,7 @@ std::vector<Fault> FaultsOf(uint64_t seed) {
   return DrawFaults(seed, BlueprintOf(seed, TheBlueprints()).run.config);
 }
 
-// The summary of a run that is as it should be; else what was wrong.
+// The summary of a correct run; else the broken promises.
 void ExpectGood(uint64_t seed, const std::vector<Fault>& faults) {
   const ChildRun run = RunInChild(TheBlueprints(), seed, faults);
   EXPECT_TRUE(run.good) << run.text << run.summary;
@@ -85,7 +85,7 @@ TEST(SimulatedRun, EachKindOfFaultIsMet) {
   ExpectGood(kFile, {At(3, Kind::kSecond, ""), At(6, Kind::kInterrupt, "")});
 }
 
-// The run cannot end meanwhile: one of its processes is paused.
+// The run cannot end in this time, because one of its processes is paused.
 TEST(SimulatedRun, AStopEndsInTimeIfItsCoordinatorDies) {
   const ChildRun run =
       RunInChild(TheBlueprints(), kFile,

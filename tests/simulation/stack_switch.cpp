@@ -16,8 +16,8 @@
 #endif
 
 #ifdef SHOAL_SWITCHES_IN_PLACE
-// Pushes the registers that a callee keeps, stores the stack pointer in *from, and takes `to` as
-// the new one.
+// Pushes the callee-saved registers, stores the stack pointer in *from, and makes `to` the new
+// stack pointer.
 extern "C" void ShoalSwitchStack(void** from, void* to);
 asm(R"(
 .pushsection .text

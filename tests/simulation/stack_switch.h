@@ -8,8 +8,8 @@
 
 namespace shoal::simulation {
 
-// Memory of a stack, with a page below it that cannot be touched, so that an overflow is a fault.
-// A later Stack uses the memory of a destroyed one again. One thread.
+// Memory of a stack, with an inaccessible page below it, so that an overflow is a fault. The memory
+// of a destroyed Stack is reused by later ones. One thread.
 class Stack {
  public:
   Stack();
@@ -24,10 +24,10 @@ class Stack {
   char* const memory_;
 };
 
-// A point at which execution goes on: of a function that has not begun, or of a SwitchTo.
+// A point at which execution can continue: the start of a function, or a call of SwitchTo.
 class StackSwitch {
  public:
-  // The place of the caller of SwitchTo.
+  // The context of a thread that calls SwitchTo.
   StackSwitch();
   // The beginning of `function`, which never returns, on `stack`.
   StackSwitch(const Stack& stack, void (*function)());
@@ -35,7 +35,7 @@ class StackSwitch {
   StackSwitch(const StackSwitch&) = delete;
   StackSwitch& operator=(const StackSwitch&) = delete;
 
-  // Goes on at `other`. Returns when something switches back to this.
+  // Continues at `other`. Returns when another context switches back to this one.
   void SwitchTo(StackSwitch& other);
 
  private:

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The events of a simulated run, in plain words, by simulated time, and the promises that were
-// broken while it ran.
+// The events of a simulated run as text, by simulated time, and the promises broken during the run.
 #pragma once
 
 #include <fmt/core.h>
@@ -19,7 +18,7 @@ class Story {
     const double seconds = std::chrono::duration<double>(Now().time_since_epoch()).count();
     lines_.push_back(fmt::format("{:9.3f} s  {}: {}", seconds, who, what));
   }
-  // A broken promise: the run has failed, whatever happens next. Called by simulated threads.
+  // Records a broken promise, so that the run has failed. Called by simulated threads.
   void Violate(const std::string& what) {
     Add("VIOLATION", what);
     violations_.push_back(what);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `shoal train` as a simulated coordinator runs it: the product's steps from the request to the end
-// of the run (launch/run/training_run.cpp), over a link in memory and with simulated processes.
+// `shoal train` of a simulated coordinator: the product's steps from the request to the end of the
+// run (launch/run/training_run.cpp), with a link in memory and simulated processes.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +14,7 @@
 
 namespace shoal::simulation {
 
-// A run: where its files are, and what takes part.
+// A run: its folder and its parts.
 struct World {
   const Blueprint& blueprint;
   std::filesystem::path folder;
@@ -24,11 +24,11 @@ struct World {
 
 enum class Begin { kFresh, kOverwrite, kResume };
 
-// Trains until the run ends; returns the exit code of `shoal train`. `clean` says whether every
-// process left in order, once that is known. Throws Error.
+// Trains until the run ends. Returns the exit code of `shoal train`. Sets `clean` to whether every
+// process ended cleanly, once this is known. Throws Error.
 int Train(const World& world, Begin begin, link::Hub& hub, std::optional<bool>* clean);
 
-// Asks for the run as `shoal train --resume` does, and lets go of it. Throws Error where it is
+// Opens the run like `shoal train --resume` and closes it again. Throws Error if the run is
 // refused.
 void AskForRun(const World& world);
 

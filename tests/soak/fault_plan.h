@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which process of a run is struck when, and how: drawn from a seed.
+// The faults of a soak: process, kind and time, drawn from a seed.
 #pragma once
 
 #include <chrono>
@@ -18,15 +18,15 @@ enum class FaultKind { kKill, kStop };
 struct Fault {
   std::string process;  // "actor-1", "coordinator"
   FaultKind kind = FaultKind::kKill;
-  std::chrono::milliseconds delay{};  // after the run had recovered from the fault before
-  std::string killed_meanwhile;       // another process, killed while this one is stopped; or none
+  std::chrono::milliseconds delay{};  // after recovery from the previous fault
+  std::string killed_meanwhile;  // another process, killed while this one is stopped; may be empty
 };
 
-// Draws faults. A process is not killed more often than a run's restart limit allows. The death of
-// the coordinator ends a run: it is resumed.
+// Draws faults. A process is not killed more often than the restart limit of a run allows. After
+// the death of the coordinator, the run has to be resumed.
 class FaultPlan {
  public:
-  // `processes` without the coordinator. `kills_alone`: nothing is stopped.
+  // `processes` does not contain the coordinator. `kills_alone`: no process is stopped.
   FaultPlan(uint64_t seed, std::vector<std::string> processes, bool kills_alone = false);
 
   Fault Next(SteadyTime now);

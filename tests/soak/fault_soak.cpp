@@ -78,14 +78,14 @@ std::string Describe(const Fault& fault) {
   return text;
 }
 
-// Seconds until everything goes on.
+// Seconds until all processes continue.
 double Strike(RunUnderTest* run, const Fault& fault, seconds recovery) {
   Pause(run, fault.delay);
   RunUnderTest::Progress before = run->TakeProgress();
   pid_t killed = 0;
   if (fault.kind == FaultKind::kKill && fault.process == "coordinator") {
-    // Processes without a coordinator leave within the lease, the replay's farewell to actors that
-    // still send, and a checkpoint.
+    // Processes without a coordinator exit after the lease, the replay's last acknowledgements to
+    // actors that still send, and a checkpoint.
     run->KillCoordinator(recovery);
     before = run->TakeProgress();
     run->Resume();

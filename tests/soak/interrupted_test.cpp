@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A soak or a benchmark leaves nothing behind when it is stopped.
+// A stopped soak or benchmark leaves no processes and files.
 #include <gtest/gtest.h>
 
 #include <csignal>

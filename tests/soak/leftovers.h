@@ -11,9 +11,8 @@ namespace shoal::soak {
 // Names of the shared memory objects of this machine.
 std::set<std::string> SharedMemoryObjects();
 
-// Throws Broken (run_under_test.h) naming what a run that has ended left: processes, UDP ports,
-// shared memory that is not in `before`, half-written or temporary files, files that others may
-// write.
+// Throws Broken (run_under_test.h) naming leftovers of an ended run: processes, UDP ports, shared
+// memory that is not in `before`, half-written or temporary files, files that others may write.
 void CheckNothingIsLeft(const std::filesystem::path& run,
                         const std::filesystem::path& temporary_files,
                         const std::set<std::string>& shared_memory_before);

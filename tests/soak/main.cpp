@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// shoal-soak: strikes a training run's processes at random moments and checks that nothing is lost
-// and nothing is left; or leaves the run alone and checks that nothing grows.
+// shoal-soak: kills or stops a training run's processes at random times and checks that no record
+// is lost and no file or process is left; or runs undisturbed and checks that no resource grows.
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -74,7 +74,7 @@ int Run(int argc, char** argv) {
   app.add_flag("--kills-alone", options.soak.kills_alone, "no SIGSTOPs");
   app.add_option("--json", options.json, "file for the result, which standard output gets, too");
   if (const auto exit_code = shoal::ParseCommandLine(&app, argc, argv)) return *exit_code;
-  prctl(PR_SET_CHILD_SUBREAPER, 1);  // what a run leaves behind becomes a child of ours
+  prctl(PR_SET_CHILD_SUBREAPER, 1);  // this process adopts leftover processes of a run
   options.soak.programs = shoal::launch::ProgramFolder();
   shoal::InstallStopSignals();
   options.soak.folder = shoal::MakeFreshFolder("shoal-soak-");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A cheap training run of the real programs, from outside: its processes, what they report, its
-// end.
+// A cheap training run of the real programs, observed from outside: its processes, their reports,
+// its end.
 #pragma once
 
 #include <chrono>
@@ -16,13 +16,13 @@
 
 namespace shoal::soak {
 
-// A rule was broken; the message says which and how.
+// A rule was broken; the message describes the rule and the fault.
 struct Broken : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 struct RunOptions {
-  std::filesystem::path folder;  // an empty one: gets the run, its output and its temporary files
+  std::filesystem::path folder;  // empty; receives the run, its output and its temporary files
   std::filesystem::path programs;
   int actors = 2;
   int64_t seed = 1;
@@ -33,7 +33,7 @@ struct RunOptions {
 
 class RunUnderTest {
  public:
-  // Starts it; returns once replay and learner make progress. Throws Broken.
+  // Starts the run. Returns once replay and learner make progress. Throws Broken.
   explicit RunUnderTest(const RunOptions& options);
 
   const std::filesystem::path& path() const { return path_; }
@@ -46,26 +46,27 @@ class RunUnderTest {
   struct Progress {
     double stored_steps = 0, updates = 0;
   };
-  // Progress by the newest reports. Throws Broken when stored records have become fewer, or batches
-  // no longer come through shared memory.
+  // Progress from the newest reports. Throws Broken if stored records have decreased, or if batches
+  // are no longer passed in shared memory.
   Progress TakeProgress();
-  // Waits until `process` (not `former`) has reported after `since`, steps were stored and updates
-  // done since `before`. Throws Broken at `deadline`.
+  // Waits until a new process of this name (not `former`) has reported after `since`, and steps and
+  // updates have increased since `before`. Throws Broken at `deadline`.
   void AwaitRecovery(const std::string& process, pid_t former, const Progress& before,
                      std::chrono::seconds deadline);
 
-  // SIGKILLs the coordinator and waits until the others have left by themselves. Throws Broken when
-  // one has not by `deadline`, or went otherwise.
+  // Kills the coordinator and waits until the other processes have ended by themselves. Throws
+  // Broken if one has not ended at `deadline`, or ended in another way.
   void KillCoordinator(std::chrono::seconds deadline);
-  // Starts it anew with --resume; it must have ended.
+  // Restarts the run with --resume. The run must have ended.
   void Resume();
 
-  // Depths of queues by the newest reports: figure -> depth.
+  // Depths of queues from the newest reports: figure -> depth.
   std::map<std::string, double> QueueDepths();
 
-  // Stops it by SIGINT and waits. Throws Broken unless it ends with 0 and balances.
+  // Stops the run with SIGINT and waits. Throws Broken unless the exit code is 0 and the account
+  // balances.
   nlohmann::json End(std::chrono::seconds deadline);
-  // Throws Broken when the coordinator has ended, Error when a signal asked for a stop.
+  // Throws Broken if the coordinator has ended, Error after a stop signal.
   void CheckAlive();
   // Last lines of the coordinator's output, for messages.
   std::string Output() const;

@@ -14,8 +14,8 @@ class Trend {
   double Mean() const;
   // Slope of the least-squares line, in units per second. 0 with fewer than two samples.
   double Slope() const;
-  // That slope over ten minutes, in percent of the mean (of 1 where the mean is less: a queue of
-  // none that grows by one in ten minutes grows by 100 %).
+  // The slope over ten minutes, in percent of the mean, or of 1 if the mean is below 1: an empty
+  // queue that grows by one in ten minutes grows by 100 %.
   double PercentPerTenMinutes() const;
   // One standard error of the percentage, from the scatter around the line.
   double PercentError() const;

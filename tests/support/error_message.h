@@ -10,7 +10,7 @@
 
 namespace shoal {
 
-// The message of the Error that `act` throws; empty when it throws none.
+// The message of the Error that `act` throws; empty if it throws none.
 template <class Act>
 std::string ErrorMessage(Act act) {
   try {
@@ -21,7 +21,7 @@ std::string ErrorMessage(Act act) {
   return "";
 }
 
-// The same of an error that must have this exit code: 2 where the usage is wrong.
+// The same for an Error that must have this exit code, for example 2 for wrong usage.
 template <class Act>
 std::string ErrorMessage(int exit_code, Act act) {
   try {

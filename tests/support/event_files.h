@@ -17,7 +17,7 @@
 
 namespace shoal {
 
-// By name, and so by the second in which they were made.
+// Sorted by name, which begins with the second of creation.
 inline std::vector<std::filesystem::path> EventFiles(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -27,7 +27,7 @@ inline std::vector<std::filesystem::path> EventFiles(const std::filesystem::path
   return files;
 }
 
-// Events of one file, whose framing must be whole; the checksums are tf_record_test's matter.
+// Events of one file, whose framing must be complete. Checksums are tested in tf_record_test.
 inline std::vector<tensorboard::proto::Event> ReadEvents(const std::filesystem::path& path) {
   const std::string file = ReadFile(path);
   std::vector<tensorboard::proto::Event> events;
@@ -51,7 +51,7 @@ inline Scalars ReadScalars(const std::filesystem::path& path) {
   Scalars scalars;
   for (const auto& event : ReadEvents(path)) {
     for (const auto& value : event.summary().value()) {
-      if (value.has_metadata()) continue;  // a plugin's
+      if (value.has_metadata()) continue;  // data of a plugin
       scalars[value.tag()].push_back({event.step(), value.simple_value()});
     }
   }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Puts the test's own process, and what it starts, into surroundings of their own: mounts, network,
-// a memory limit. Each function answers "" or the reason why it cannot be done here, for
-// GTEST_SKIP. For tests that run in a process of their own each, as ctest starts them.
+// Isolates the test's process and its children: mounts, network, memory limit. Each function
+// returns
+// "", or the reason why isolation is impossible here, for GTEST_SKIP. Each test must run in a
+// separate process, as with ctest.
 #pragma once
 
 #include <fcntl.h>
@@ -36,7 +37,7 @@ inline std::string OwnMounts() {
   return "";
 }
 
-// A disk of that size in memory over the folder, while it lives. After OwnMounts().
+// Mounts a disk of this size in memory over the folder, until destruction. Needs OwnMounts().
 class SmallDisk {
  public:
   SmallDisk(const std::filesystem::path& folder, const std::string& size, unsigned long flags = 0)
@@ -59,7 +60,7 @@ class SmallDisk {
   std::string why_not_;
 };
 
-// A network with nothing but its own loopback.
+// Creates a network that has only a loopback interface.
 inline std::string OwnNetwork() {
   if (const std::string no = Unshare(CLONE_NEWNET); !no.empty()) return no;
   const int fd = socket(AF_INET, SOCK_DGRAM, 0);
@@ -72,7 +73,7 @@ inline std::string OwnNetwork() {
   return no;
 }
 
-// A control group that limits the memory of this process and its children while it lives.
+// A control group that limits the memory of this process and its children until destruction.
 class MemoryLimit {
  public:
   explicit MemoryLimit(uint64_t bytes) {

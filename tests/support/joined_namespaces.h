@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two hosts on one machine: ours and a network namespace beside it, joined by a veth pair. The far
-// side has its own addresses, ports and loopback, so that nothing reaches it but over the link.
+// Two hosts on one machine: the machine itself and a network namespace, joined by a veth pair. The
+// far side has its own addresses, ports and loopback, so it can be reached only over the link.
 #pragma once
 
 #include <fmt/core.h>
@@ -35,14 +35,14 @@ class JoinedNamespaces {
   JoinedNamespaces(const JoinedNamespaces&) = delete;
   JoinedNamespaces& operator=(const JoinedNamespaces&) = delete;
 
-  // False where this machine does not let us: not root, no `ip`, no namespaces.
+  // False if this machine does not allow it: not root, no `ip`, no namespaces.
   bool made() const { return made_; }
 
   std::string near_address() const { return Address(1); }
-  // Takes one more word: a shell command that is run on the far side.
+  // Command prefix; one further word is a shell command for the far side.
   std::vector<std::string> Shell() const { return {"ip", "netns", "exec", far_, "sh", "-c"}; }
 
-  // The cable, at the far end.
+  // Disconnects the far end of the link.
   bool Cut() const { return Ip("-n " + far_ + " link set " + far_link_ + " down"); }
   bool Join() const { return Ip("-n " + far_ + " link set " + far_link_ + " up"); }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trainings whose result is held to what policies achieve that have learned nothing. A learning
-// test that doing nothing or acting at random passes tests nothing.
+// Training runs whose results are compared with untrained policies. A learning test is meaningless
+// if no-op or random actions pass it.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -19,18 +19,18 @@
 
 namespace shoal {
 
-// Figures of two policies that have learned nothing: every action zero, and uniform random actions.
-// Members are those of `aggregate` in eval/*.json.
+// Figures of two untrained policies: zero actions, and uniform random actions. Members are those of
+// `aggregate` in eval/*.json.
 struct Untrained {
   nlohmann::json noop, random;
 
-  // Figure of the better one.
+  // Figure of the better policy.
   double Most(const char* figure) const {
     return std::max(noop.at(figure).get<double>(), random.at(figure).get<double>());
   }
 };
 
-// Measures them over 50 episodes of a task each, always the same ones.
+// Measures both policies on the same 50 episodes of a task.
 inline Untrained PlayUntrained(const std::string& task) {
   const TemporaryFolder folder;
   const auto play = [&](const std::string& policy) {
@@ -47,10 +47,10 @@ inline Untrained PlayUntrained(const std::string& task) {
 // Result of a run.
 struct LearningResult {
   nlohmann::json meta;
-  nlohmann::json aggregate;  // of the final evaluation, of the best checkpoint
+  nlohmann::json aggregate;  // of the final evaluation of the best checkpoint
 };
 
-// Trains with a preset, `keys` over its own. The run must end well, with a balanced account.
+// Trains with a preset; `keys` override its keys. The run must succeed with a balanced account.
 inline LearningResult Learn(const std::string& preset,
                             const std::map<std::string, std::string>& keys,
                             std::chrono::seconds deadline) {
@@ -71,8 +71,8 @@ inline LearningResult Learn(const std::string& preset,
   return learned;
 }
 
-// The same with seed 1 and, unless the result is `enough`, once more with seed 2. A seed may fail
-// although the algorithm learns; an algorithm that is broken fails with both.
+// The same with seed 1 and, unless the result is `enough`, again with seed 2. A single seed can
+// fail although the algorithm learns; a broken algorithm fails with both.
 inline LearningResult LearnWithOneSeedOfTwo(
     const std::string& preset, std::map<std::string, std::string> keys,
     std::chrono::seconds deadline, const std::function<bool(const nlohmann::json&)>& enough) {
@@ -92,8 +92,8 @@ inline LearningResult LearnGoals(const std::string& preset,
                                });
 }
 
-// The final episodes succeed at least at this rate, and far more often than with either policy that
-// has learned nothing.
+// Expects that the final episodes succeed at least at this rate, and far more often than with
+// either untrained policy.
 inline void ExpectSuccess(const LearningResult& learned, const std::string& task, double least) {
   constexpr double kMargin = 0.5;
   const double rate = learned.aggregate.at("success_rate").get<double>();

@@ -13,7 +13,7 @@
 
 namespace shoal {
 
-// A member of `run` until it is killed. The test ends when it cannot become one.
+// A process that is a member of `run` until it is killed. Fails the test if it cannot join the run.
 class MemberProcess {
  public:
   explicit MemberProcess(const std::filesystem::path& run) {

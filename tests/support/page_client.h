@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Asks the server of `shoal web`, on loopback, as a browser would.
+// Sends requests to the server of `shoal web` on loopback, like a browser.
 #pragma once
 
 #include <arpa/inet.h>
@@ -28,7 +28,7 @@ class PageConnection {
               0);
   }
 
-  // False when the server has closed.
+  // Returns false if the server has closed the connection.
   bool Send(const std::string& bytes) const {
     size_t sent = 0;
     while (sent < bytes.size()) {
@@ -40,7 +40,7 @@ class PageConnection {
   }
   void EndSending() const { shutdown(socket_.get(), SHUT_WR); }
 
-  // All that comes until the server closes; a failure of the test when it does not.
+  // Reads until the server closes the connection. Fails the test if it does not.
   std::string Answer() const {
     std::string answer;
     const SteadyTime end = Now() + std::chrono::seconds(60);
@@ -60,7 +60,7 @@ class PageConnection {
   const Descriptor socket_;
 };
 
-// All of an answer to `request`, headers included.
+// The complete answer to `request`, headers included.
 inline std::string AskPage(uint16_t port, const std::string& request) {
   const PageConnection connection(port);
   connection.Send(request);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads /proc about processes.
+// Reads information about processes from /proc.
 #pragma once
 
 #include <sys/types.h>
@@ -18,7 +18,7 @@
 
 namespace shoal {
 
-// 'R', 'S', 'T' (stopped), 'Z' ...; empty when there is no such process.
+// 'R', 'S', 'T' (stopped), 'Z' ...; empty if the process does not exist.
 inline std::optional<char> ProcessState(pid_t pid) {
   std::ifstream in("/proc/" + std::to_string(pid) + "/stat");
   std::string stat;
@@ -28,7 +28,7 @@ inline std::optional<char> ProcessState(pid_t pid) {
   return stat[name_end + 2];
 }
 
-// It has ended, whether or not its parent has taken notice.
+// Whether the process has ended; zombies have ended.
 inline bool HasEnded(pid_t pid) {
   const auto state = ProcessState(pid);
   return !state || *state == 'Z' || *state == 'X';
@@ -43,7 +43,7 @@ inline bool WaitUntilEnded(pid_t pid, std::chrono::seconds deadline) {
   return true;
 }
 
-// The words of its command line; empty when there is no such process (or it is a zombie).
+// The words of the command line; empty if the process does not exist or is a zombie.
 inline std::vector<std::string> CommandLine(pid_t pid) {
   std::ifstream in("/proc/" + std::to_string(pid) + "/cmdline", std::ios::binary);
   std::vector<std::string> words;
@@ -51,7 +51,7 @@ inline std::vector<std::string> CommandLine(pid_t pid) {
   return words;
 }
 
-// 0 when there is no such process.
+// 0 if the process does not exist.
 inline pid_t ParentOf(pid_t pid) {
   std::ifstream in("/proc/" + std::to_string(pid) + "/status");
   for (std::string line; std::getline(in, line);) {

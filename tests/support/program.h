@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs one of the built programs to its end and reads what it said.
+// Runs one of the built programs to its end and reads its output.
 #pragma once
 
 #include <chrono>
@@ -16,12 +16,12 @@
 namespace shoal {
 
 struct ProgramResult {
-  bool ended = false;  // false: the deadline came first and it was killed
+  bool ended = false;  // false: killed at the deadline
   launch::ExitStatus status;
   std::string out, err;
 };
 
-// command[0] is a path; `environment` is set besides the test's own.
+// command[0] is a path; `environment` is added to the test's own environment.
 inline ProgramResult RunCommand(std::vector<std::string> command, std::chrono::seconds deadline,
                                 std::vector<std::pair<std::string, std::string>> environment = {}) {
   const TemporaryFolder folder;
@@ -46,7 +46,7 @@ inline ProgramResult RunProgram(std::vector<std::string> command, std::chrono::s
   return RunCommand(std::move(command), deadline);
 }
 
-// Exit code, or -1 when it was killed or did not end.
+// Exit code, or -1 if the program was killed or did not end.
 inline int ExitCode(const ProgramResult& result) {
   return result.ended && !result.status.by_signal ? result.status.code : -1;
 }

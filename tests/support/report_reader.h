@@ -18,24 +18,24 @@ class ReportReader {
  public:
   explicit ReportReader(const std::filesystem::path& run) : file_(run / "metrics.jsonl") {}
 
-  // Leaves out what the file holds now: reports of an earlier session of the run.
+  // Skips the present contents of the file: reports of an earlier session of the run.
   void SkipOld() {
     std::error_code none_yet;
     const auto size = std::filesystem::file_size(file_, none_yet);
     if (!none_yet) offset_ = static_cast<std::streamoff>(size);
   }
 
-  // The newest report of role's process `id`; null when there is none yet.
+  // The newest report of the role's process `id`; null if there is none yet.
   const nlohmann::json& Last(const std::string& role, int id = 0) {
     ReadOn();
     return last_[{role, id}];
   }
-  // The same, waited for when there is none yet; null when none came in time.
+  // Waits for the first report of the process; null at the deadline.
   nlohmann::json Await(const std::string& role, int id = 0) {
     return WaitFor(
         role, [](const auto&) { return true; }, std::chrono::seconds(60), id);
   }
-  // Looks until done(newest report), a report being there; null when `deadline` came first.
+  // Polls until there is a report and done(newest report) is true; null at `deadline`.
   template <class Done>
   nlohmann::json WaitFor(const std::string& role, Done done,
                          std::chrono::seconds deadline = std::chrono::seconds(60), int id = 0) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Views of a test's run that `shoal` publishes for watchers.
+// Views of a test's run, read with `shoal`.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 
 namespace shoal {
 
-// `shoal` with these words, looking for runs where the test's run is.
+// Runs `shoal` with these words, and with --run-dir set to the folder of the test's run.
 inline ProgramResult RunShoal(const TrainingRun& run, std::vector<std::string> words,
                               std::chrono::seconds deadline = std::chrono::seconds(90)) {
   words.insert(words.begin(), "shoal");
@@ -24,8 +24,8 @@ inline ProgramResult RunShoal(const TrainingRun& run, std::vector<std::string> w
   return RunProgram(words, deadline);
 }
 
-// The view of `shoal top --once --json`, asked for again until `done` holds; null, and a failure of
-// the test, when it did not in time.
+// Polls `shoal top --once --json` until `done` holds for the view. Fails the test and returns null
+// at the deadline.
 template <class Done>
 nlohmann::json WaitForView(const TrainingRun& run, Done done,
                            std::chrono::seconds deadline = std::chrono::seconds(90)) {
@@ -42,7 +42,7 @@ nlohmann::json WaitForView(const TrainingRun& run, Done done,
   return {};
 }
 
-// The process of a role in a view; null when there is none.
+// The process of a role in a view; null if there is none.
 inline nlohmann::json ProcessOf(const nlohmann::json& view, const std::string& role, int id = 0) {
   for (const nlohmann::json& process : view.at("processes")) {
     if (process.at("role") == role && process.at("id") == id) return process;
@@ -50,7 +50,7 @@ inline nlohmann::json ProcessOf(const nlohmann::json& view, const std::string& r
   return {};
 }
 
-// For WaitForView: there are more than 50 updates, by batches whose policies are known.
+// Condition for WaitForView: more than 50 updates, with batches of known policy versions.
 inline bool Learns(const nlohmann::json& view) {
   const nlohmann::json learner = ProcessOf(view, "learner");
   return learner.is_object() && learner.value("updates", 0.0) > 50 &&

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A training run of the real programs that goes on while the test does something to it.
+// A training run of the real programs that a test disturbs while it is running.
 #pragma once
 
 #include <chrono>
@@ -21,7 +21,7 @@ class RunningTraining {
  public:
   using Environment = std::vector<std::pair<std::string, std::string>>;
 
-  // Starts `shoal train` with the words of TrainingRun::Command (or of a resume).
+  // Starts `shoal train` with the words of TrainingRun::Command or of a resume.
   RunningTraining(const TrainingRun& run, std::vector<std::string> command,
                   const Environment& environment = {})
       : run_(run),
@@ -31,7 +31,7 @@ class RunningTraining {
   pid_t pid() const { return child_.pid(); }
   ReportReader& reports() { return reports_; }
 
-  // Waits until the replay has stored `steps` more steps. False when it did not in time.
+  // Waits until the replay has stored `steps` more steps. Returns false at the deadline.
   bool WaitForMoreSteps(int64_t steps) {
     const nlohmann::json newest = reports_.Await("replay");
     return !newest.is_null() && WaitForSteps(Stored(newest) + steps);
@@ -43,10 +43,10 @@ class RunningTraining {
                 .is_null();
   }
 
-  // Ctrl-C.
+  // Sends Ctrl-C.
   void Interrupt() { child_.Signal(SIGINT); }
-  // Waits for the end; exit code as a shell has it (kInterruptedExit after Interrupt), or -1 when
-  // it was killed (SIGKILL) or did not end.
+  // Waits for the end. Returns the exit code as in a shell (kInterruptedExit after Interrupt), or
+  // -1 if the run was killed (SIGKILL) or did not end.
   int End(std::chrono::seconds deadline) {
     const SteadyTime end = Now() + deadline;
     while (Now() < end) {
@@ -59,7 +59,7 @@ class RunningTraining {
   }
 
   std::string Output() const { return ReadFile(OutputFile(run_)); }
-  // Waits until the run has printed the text. False when it did not in time.
+  // Waits until the run has printed the text. Returns false at the deadline.
   bool WaitForOutput(const std::string& text,
                      std::chrono::seconds deadline = std::chrono::seconds(60)) const {
     const SteadyTime end = Now() + deadline;
@@ -98,7 +98,7 @@ class RunningTraining {
   launch::ChildProcess child_;
 };
 
-// Kills the process of a role and waits until another one reports in its place.
+// Kills the process of a role and waits for a report of its successor.
 inline void KillAndWaitForSuccessor(RunningTraining* training, const std::string& role) {
   const nlohmann::json before = training->reports().WaitFor(role, [](const auto&) { return true; });
   ASSERT_FALSE(before.is_null()) << role;

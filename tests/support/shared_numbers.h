@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers that both sides of a comparison compute for themselves, so that recordings need not hold
-// them. tests/comparison/shared_numbers.py has the same.
+// Numbers that both sides of a comparison compute, so that recordings need not contain them. Must
+// equal tests/comparison/shared_numbers.py.
 #pragma once
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Preloaded into programs under test: their wall clock runs beside the machine's by what the file
-// named by SHOAL_CLOCK_SKEW says (a decimal count of seconds; looked at once per call). The steady
-// clocks are left alone, as a clock that is set leaves them.
+// Preloaded into programs under test: shifts their wall clock by the decimal number of seconds in
+// the file named by SHOAL_CLOCK_SKEW, which each call reads. Steady clocks are not changed, as if
+// the clock had been set.
 #include <fcntl.h>
 #include <sys/syscall.h>
 #include <sys/time.h>

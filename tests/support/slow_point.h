@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A task whose steps take three milliseconds (tests/integration/crashing_point): runs that wait for
-// a time limit leave the processors to other tests meanwhile. It needs the targets crashing_point
-// and crashing_point_physics.
+// A task whose steps take three milliseconds (tests/integration/crashing_point), so that runs that
+// wait for a time limit leave the processors to other tests. Needs the targets crashing_point and
+// crashing_point_physics.
 #pragma once
 
 #include "tests/support/paths.h"
@@ -9,7 +9,7 @@
 
 namespace shoal {
 
-// `keys` over those of the task.
+// The keys of the task; `keys` override them.
 inline TrainingRun::Keys SlowPoint(const TrainingRun::Keys& keys) {
   TrainingRun::Keys all{{"task_library", ProgramPath("crashing_point.so")},
                         {"task", "CrashingPoint"},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs one of the built programs on a terminal of its own, as a user would see it.
+// Runs one of the built programs on a pseudo-terminal.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ class TerminalProgram {
   }
   void Signal(int signal) { kill(pid_, signal); }
 
-  // Reads on until `text` has been shown since the last call; false when it was not in time.
+  // Reads until `text` has been shown after the last call. Returns false at the deadline.
   bool WaitFor(const std::string& text, std::chrono::seconds deadline) {
     const SteadyTime end = Now() + deadline;
     while (Now() < end) {
@@ -75,8 +75,8 @@ class TerminalProgram {
   }
   const std::string& shown() const { return shown_; }
 
-  // Its exit code as a shell has it, 128 + the number of the signal it died by; -1 when it has not
-  // ended in time.
+  // The exit code as in a shell, 128 + number of the signal that killed the program; -1 at the
+  // deadline.
   int End(std::chrono::seconds deadline) {
     const SteadyTime end = Now() + deadline;
     int status = 0;
@@ -88,7 +88,7 @@ class TerminalProgram {
     }
     return -1;
   }
-  // The terminal's settings are those of before the program.
+  // Whether the terminal's settings are the same as before the program.
   bool LeftAsItWas() const {
     termios now{};
     tcgetattr(its_end_, &now);

@@ -7,7 +7,7 @@
 
 namespace shoal {
 
-// Its definition; `more` goes over it.
+// The definition of the experiment; `more` overrides its members.
 inline nlohmann::json TinyExperiment(const nlohmann::json& more = nlohmann::json::object(),
                                      int64_t env_steps = 1200) {
   using nlohmann::json;

@@ -20,7 +20,7 @@ class TrainingRun {
  public:
   using Keys = std::map<std::string, std::string>;
 
-  // `keys` over those of a run from pixels that ends within seconds.
+  // Keys of a run from pixels that ends within seconds; `keys` override them.
   static Keys FromPixels(const Keys& keys = {}) {
     Keys all{{"observation.pixels", "true"},
              {"env_steps", "400"},
@@ -35,8 +35,8 @@ class TrainingRun {
     return all;
   }
 
-  // Command line of `shoal train` for a short run, from state unless `flags`, which are appended,
-  // name another preset; `keys` go over the defaults here.
+  // Command line of `shoal train` for a short run. The run is from state unless `flags`, which are
+  // appended, name another preset. `keys` override the defaults.
   std::vector<std::string> Command(const Keys& keys = {},
                                    const std::vector<std::string>& flags = {}) const {
     Keys all{{"env_steps", "4000"},        {"eval.episodes", "8"},
@@ -48,7 +48,7 @@ class TrainingRun {
     return CommandOf(named ? "" : "fetch-reach-state", all, flags);
   }
 
-  // The same of a run of PPO, which has no replay.
+  // The same for a run of PPO, which has no replay.
   std::vector<std::string> OnPolicyCommand(const Keys& keys = {},
                                            const std::vector<std::string>& flags = {}) const {
     Keys all{{"eval.episodes", "8"},    {"eval.final_episodes", "0"},

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A folder that this process may not look into while the object lives, also where tests run as
-// root.
+// Makes a folder unreadable for this process until destruction, also if tests run as root.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,7 +12,7 @@ namespace shoal {
 
 class WithoutRights {
  public:
-  // `folder` is closed to everybody; the one above it may be read.
+  // Removes all permissions of `folder`; its parent remains readable.
   explicit WithoutRights(std::filesystem::path folder)
       : folder_(std::move(folder)),
         above_(folder_.parent_path()),

@@ -31,7 +31,7 @@ Config ConfigOf(const std::string& kind, Schedule sigma = Schedule::Constant(0.2
   return config;
 }
 
-// A policy that always says the same of its one action component.
+// A policy with a constant distribution of its single action component.
 class Player {
  public:
   explicit Player(const Config& config, double factor = 1)
@@ -107,7 +107,7 @@ TEST(SquashedGaussian, HasThePolicysMeanAndDeviation) {
   const std::vector<double> sample = Player(ConfigOf("squashed_gaussian")).Unsquashed();
   const double sigma = std::exp(kLogStd);
   EXPECT_TRUE(LooksNormal(sample, kPolicyMean, sigma));
-  // The same judgement tells what is wrong.
+  // The same test rejects wrong samples.
   EXPECT_FALSE(LooksNormal(Scaled(sample, kPolicyMean, 0), kPolicyMean, sigma));
   EXPECT_FALSE(LooksNormal(Scaled(sample, kPolicyMean, 1.1), kPolicyMean, sigma));
   EXPECT_FALSE(LooksNormal(sample, kPolicyMean + 0.02, sigma));
@@ -181,7 +181,7 @@ class OrnsteinUhlenbeckTest : public testing::Test {
   static double Deviation(int t) {
     return kSigma * std::sqrt((1 - std::pow(kRho, 2 * t)) / (1 - kRho * kRho));
   }
-  // x_t of many episodes, for t = first and the step behind it.
+  // x_t of many episodes, for t = `first` and the next step.
   static std::array<std::vector<double>, 2> Play(const Config& config, int first) {
     Player player(config);
     std::array<std::vector<double>, 2> noises;

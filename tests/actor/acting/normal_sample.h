@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Is a sample from a normal distribution of given mean and deviation? Judged by its mean and its
-// deviation, each within five standard errors.
+// Tests whether a sample comes from a normal distribution of given mean and deviation: its mean and
+// its deviation must each be within five standard errors.
 #pragma once
 
 #include <cmath>
@@ -31,7 +31,7 @@ inline bool LooksNormal(const std::vector<double>& sample, double mean, double s
          std::fabs(seen.deviation - sigma) < 5 * sigma / (std::sqrt(2.0) * root);
 }
 
-// The same numbers with their noise around `mean` multiplied.
+// The sample with its noise around `mean` multiplied.
 inline std::vector<double> Scaled(std::vector<double> sample, double mean, double factor) {
   for (double& x : sample) x = mean + factor * (x - mean);
   return sample;

@@ -68,9 +68,9 @@ TEST(RandomBaseline, EveryTaskHasOneAndThoseWithoutGoalsHaveNoCurve) {
   }
 }
 
-// Doing nothing, an arm that settles by millimetres keeps its distance: the return of
-// FetchReachDense is nearly that of 50 equal steps, and the episodes are those that random actions
-// are judged on.
+// Without actions the arm settles by millimetres only, so the distance hardly changes: the return
+// of FetchReachDense is nearly that of 50 equal steps. The episodes are the same as for random
+// actions.
 TEST(RandomBaseline, NoopActsWithZeros) {
   const ordered_json noop =
       PlayRandom({.task = "FetchReachDense", .episodes = 5, .policy = "noop"}, Never);

@@ -40,8 +40,8 @@ struct FakeWeights final : WeightsSource {
   std::optional<ReceivedWeights> next;
 };
 
-// The loop over a replay, a learner, a coordinator and a clock that the test plays. The replay
-// stores what it is sent, and says so at the actor's next look, as long as it is `storing_`.
+// The loop with a replay, a learner, a coordinator and a clock that the test simulates. While
+// `storing_`, the replay stores sent records and acknowledges them at the actor's next poll.
 class ActorLoopTest : public testing::Test {
  protected:
   ActorLoopTest() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rollouts whose environments begin or step with numbers that are not finite.
+// Rollouts with environments whose resets or steps give numbers that are not finite.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -173,7 +173,7 @@ TEST_F(FaultyRolloutTest, ATaskThatCannotBeginIsAnErrorWhateverShareIsAllowed) {
 }
 
 TEST_F(FaultyRolloutTest, FaultyEpisodesAreLoggedAsFailures) {
-  const uint64_t faulty_key = KeyOf(kFirstEnv + 2, 0);  // the one that is not cut short
+  const uint64_t faulty_key = KeyOf(kFirstEnv + 2, 0);  // the episode without a cut
   Start([=](uint64_t key, int step) { return key == faulty_key && step == 3; });
   for (int i = 0; i < 3; ++i) ASSERT_TRUE(rollout_->TryStep());
   ASSERT_GE(rollout_->episodes().count(), 1u);

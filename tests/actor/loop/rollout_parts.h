@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rollout over environments without physics, and what it borrows.
+// A rollout over environments without physics, and the objects that it borrows.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ inline Config SmallConfig(int envs) {
   return config;
 }
 
-// Takes every record while it has room.
+// Accepts records until it is full.
 class FakeSink final : public RecordSink {
  public:
   explicit FakeSink(const ObservationSpec& spec) : layout_(spec) {}
@@ -45,7 +45,7 @@ class FakeSink final : public RecordSink {
   void EndRecord(uint64_t sequence) override {
     sequences.push_back(sequence);
     records.push_back(open_);
-    // The clock's time differs between two runs.
+    // Cleared, because the time differs between two runs.
     RecordLayout::Header(reinterpret_cast<uint8_t*>(records.back().data())).time_ns = 0;
   }
 

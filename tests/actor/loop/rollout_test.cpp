@@ -119,7 +119,7 @@ TEST_F(RolloutTest, TheFiguresOfEndedEpisodesAreLogged) {
   EXPECT_EQ(rollout().episodes().Mean().length, CountingEnvironment::kLength);
 }
 
-// Environments whose episodes are as long as the task says, 50 steps.
+// Environments with episodes of the task's length, 50 steps.
 class SpreadResetsTest : public RolloutTest {
  protected:
   static constexpr int kSteps = 50;
@@ -127,7 +127,7 @@ class SpreadResetsTest : public RolloutTest {
   void Start(int envs) {
     parts_.emplace(run_.path(), sink_, SmallConfig(envs), kFirstEnv, /*session=*/10, kSteps);
   }
-  // Steps, and says which of the environments were reset in doing so.
+  // Steps, and returns the environments that were reset in this step.
   std::vector<int> Resets() {
     const size_t before = sink_.records.size();
     Step(1);
@@ -189,7 +189,7 @@ TEST_F(SpreadResetsTest, FiguresLeaveOutEpisodesThatAreCut) {
   EXPECT_EQ(rollout().episodes().Mean().length, kSteps);
 }
 
-// Among episodes with a cut only those that ended early are whole.
+// If episodes are cut, only those that ended before their cut are complete.
 TEST_F(RolloutTest, FiguresLeaveOutEpisodesThatWereToBeCutAndEndedBefore) {
   Start(2);
   Step(CountingEnvironment::kLength);
@@ -243,7 +243,7 @@ TEST_F(RolloutTest, ARecordNamesTheWeightsThatChoseItsAction) {
   EXPECT_EQ(sink_.Header(2).weights_update, 20u);
 }
 
-// The exploration of an episode depends on its name alone, not on actor or time.
+// The exploration of an episode depends only on its name, not on actor or time.
 TEST_F(RolloutTest, TheSameEpisodeHasTheSameActionsWhicheverActorPlaysIt) {
   Start(2);
   Step(1);
@@ -314,7 +314,7 @@ class WarmUpTest : public RolloutTest {
     config_.exploration.sigma = Schedule::Constant(0);  // actions of the policy can be recognized
     parts_.emplace(run_.path(), sink_, config_, kFirstEnv);
   }
-  // By uniform random actions, as far as the record's numbers say it.
+  // Whether the record's action is uniformly random, judged by the numbers in the record.
   bool Random(size_t record) const {
     const float action = sink_.layout().Action(sink_.Bytes(record))[0];
     const bool by_policy = std::abs(action - std::tanh(0.3F)) < 1e-6F;

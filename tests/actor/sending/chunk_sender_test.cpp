@@ -130,7 +130,7 @@ TEST_F(ChunkSenderTest, NothingIsResentWhileNothingWasSent) {
   EXPECT_EQ(window_.resent_records(), 0u);
 }
 
-// Its credit is spent, everything is stored, and the replay that said so is dead.
+// The credit is used up, all records are acknowledged, and the replay that sent this is dead.
 TEST_F(ChunkSenderTest, InSilenceItSaysWhereItStands) {
   Make(4);
   sender_.Exchange(clock_.now);

@@ -191,8 +191,8 @@ TEST(ChunkWindow, ANewReplayMayAllowLess) {
   EXPECT_FALSE(window.NextToSend());
 }
 
-// A lossy, restarting replay that remembers only what it stored: everything arrives, in order, once
-// duplicates are dropped, whatever is lost on the way.
+// A lossy, restarting replay that keeps only stored records. After duplicates are dropped, all
+// records arrive in order in spite of the losses.
 TEST(ChunkWindow, EverythingIsStoredInTheEndDespiteLossAndRestarts) {
   for (uint64_t seed = 1; seed <= 50; ++seed) {
     Random random(seed);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A link to a replay that a test plays, and the clock of both: time passes only while a credit is
-// waited for.
+// A link to a replay server that the test simulates, and the clock of both. Time passes only while
+// the sender waits for a credit.
 #pragma once
 
 #include <deque>
@@ -52,10 +52,10 @@ class FakeLink final : public ChunkLink {
     return true;
   }
 
-  std::function<void()> answer;  // called at each look for a credit
+  std::function<void()> answer;  // called at each poll for a credit
   std::deque<Credit> credits;
   std::vector<SentChunk> sent;
-  std::vector<uint64_t> positions;  // of the chunks without records: where the keeping begins
+  std::vector<uint64_t> positions;  // of chunks without records: the first retained sequence
   bool connected = true, taking = true;
 
  private:

@@ -52,7 +52,7 @@ TEST_F(AbstractSceneTest, AFreeCameraLooksAtItsPoint) {
   }
 }
 
-// The camera is no part of the state: what one sees, another sees too.
+// The camera is not a part of the state: all cameras see the same geoms.
 TEST_F(AbstractSceneTest, TwoCamerasSeeOneState) {
   const auto poses = [this](const char* camera) {
     const mjvScene& scene = See(FindCamera(*world_, camera));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames of ours beside frames of the original environments with their own meshes.
+// Compares Shoal's frames with frames of the original environments with their own meshes.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Our pictures of Hopper and the Control Suite beside those of the original models: camera 0,
-// 84x84.
+// Compares Shoal's pictures of Hopper and the Control Suite with those of the original models:
+// camera 0, 84x84.
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
 

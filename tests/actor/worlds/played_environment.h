@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An environment that a test plays by itself, without an actor.
+// An environment that a test steps directly, without an actor.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ inline std::unique_ptr<Environment> Make(const Config& config) {
                                                            : std::shared_ptr<RenderContext>());
 }
 
-// An environment with room for its observations and the actions of one stream.
+// An environment, buffers for its observations, and a stream of random actions.
 struct Player {
   explicit Player(std::unique_ptr<Environment> made)
       : environment(std::move(made)),

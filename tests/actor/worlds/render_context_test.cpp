@@ -73,7 +73,7 @@ Pixel Project(const CameraView& camera, const std::array<double, 3>& point) {
   return {kSide / 2.0 + focal * x / depth, kSide / 2.0 - focal * y / depth};
 }
 
-// Centre of the pixels that are red, blue-for-red frames included as what they are: not red.
+// Centre of the red pixels. Pixels with red and blue exchanged do not count as red.
 std::optional<Pixel> RedCentre(const Frame& frame, int* count) {
   Pixel sum;
   *count = 0;
@@ -126,7 +126,8 @@ TEST(RenderContextDeathTest, TexturesThatWereReleasedAreNotUploaded) {
 
 class DefaultCameras : public testing::TestWithParam<const char*> {};
 
-// Behind the gripper or the object for one of them, as in the original, but hardly for both.
+// The gripper or the object may hide the goal from one camera, as in the original, but rarely from
+// both.
 TEST_P(DefaultCameras, ShowTheTargetInOneOfThemWhereverItIs) {
   const std::unique_ptr<World> world = MakeWorld(GetParam(), {});
   RenderContext context(Observation("fast"));

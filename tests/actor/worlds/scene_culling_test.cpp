@@ -48,7 +48,7 @@ class SphereScene {
     return geom;
   }
 
-  // Ids of what is left.
+  // Ids of the remaining geoms.
   std::vector<int> Seen() {
     std::vector<mjvGeom> geoms = geoms_;
     scene_.geoms = geoms.data();
@@ -104,11 +104,11 @@ TEST(SceneCulling, KeepsEveryGeomOfWhichAPointIsInView) {
     EXPECT_TRUE(kept[i]) << i;
   }
   EXPECT_GT(in_view, 100);
-  // Spheres beside a corner of the view are kept although nothing of them is seen; few others are.
+  // Spheres near a corner of the view are kept although they are invisible; few others are kept.
   EXPECT_LT(seen.size(), size_t(in_view) + 50);
 }
 
-// A geom that is turned and as long as it is thin; points of the shape itself.
+// A rotated geom that is both long and thin; points of the shape itself.
 struct Shape {
   int type;
   bool (*holds)(double x, double y,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Episode k of environment i is the same bytes however environments are spread over actors and
-// processes, as long as actions come from streams of their own.
+// Episode k of environment i has the same bytes for every distribution of environments over actors
+// and processes if each environment has its own stream of actions.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -93,7 +93,7 @@ void PlayActor(const std::string& task, const std::vector<int>& numbers, Hashes*
   }
 }
 
-// The same in a process of its own, forked before this one draws anything.
+// The same in a separate process, forked before this process draws numbers.
 Hashes PlayInAnotherProcess(const std::string& task, const std::vector<int>& numbers) {
   int ends[2];
   EXPECT_EQ(pipe(ends), 0);

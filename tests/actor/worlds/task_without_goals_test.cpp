@@ -18,7 +18,7 @@ namespace {
 // A task without goals: its reward and its end come from the physics half.
 class Countdown final : public World {
  public:
-  // `reward_factor` and `observation_factor` spoil what is seen of it.
+  // `reward_factor` and `observation_factor` can make rewards and observations invalid.
   explicit Countdown(double reward_factor = 1, double observation_factor = 1)
       : World(Load()), reward_factor_(reward_factor), observation_factor_(observation_factor) {}
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// MJCF files of users in place of ours.
+// MJCF files of users in place of Shoal's own.
 #include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -94,8 +94,8 @@ TEST_P(UserModel, MayBeHeldAsInMujoco3) {
   EXPECT_NE(world->fingerprint(), literal->fingerprint());
 }
 
-// The engine takes the place of a site at its body's origin from the body alone, whatever site_pos
-// says; pictures would show the target in one place for every goal.
+// The engine ignores site_pos for a site at its body's origin. Pictures would then show the target
+// at the same place for every goal.
 TEST_P(UserModel, ATargetAtItsBodysOriginGoesWhereTheGoalIs) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "mine.xml";

@@ -31,8 +31,8 @@ TEST(Presets, DrqLearnsFromTwoCamerasAlone) {
   EXPECT_FALSE(config.observation.proprioception);
 }
 
-// They then need no OSMesa. Stable-Baselines3's recipe has the original environment's pictures, and
-// `pixels` also serves environments of the user's own, which refuse the key.
+// Presets with quality native need no OSMesa. The recipe of Stable-Baselines3 uses the original
+// environment's pictures, and `pixels` is also for users' environments, which refuse the key.
 TEST(Presets, FromPixelsTakeQualityNative) {
   std::vector<std::string> native;
   for (const std::string& name : ListPresets()) {

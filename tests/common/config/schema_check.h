@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a JSON value keeps to a JSON Schema: the keywords that ConfigSchema uses, and no others.
+// Validates a JSON value against a JSON Schema. Supports only the keywords that ConfigSchema uses.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@ namespace shoal {
 
 class SchemaCheck {
  public:
-  // The first fault as "PATH: KEYWORD"; empty if there is none. Fails the test on a keyword
-  // that it does not know, so that none is passed over.
+  // The first fault as "PATH: KEYWORD"; empty if there is none. Fails the test on an unknown
+  // keyword, so that no keyword is ignored.
   static std::string Fault(const nlohmann::json& value, const nlohmann::json& schema,
                            const std::string& path = "") {
     for (const auto& [keyword, argument] : schema.items()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keys that make no sense beside each other.
+// Keys that contradict each other.
 #include <gmock/gmock.h>
 
 #include <functional>

@@ -37,8 +37,8 @@ void Say(const std::string& line) {
   std::cout << line << std::endl;
 }
 
-// Cuts the network for a while, in all of the bus's domains: what arrives and what is sent is
-// dropped. From outside of the process it would take root.
+// Cuts the network for a time, in all domains of the bus: drops received and sent packets. From
+// outside of the process this would require root.
 void CutOff(Bus& bus, milliseconds duration) {
   const Bus::Impl& impl = bus.impl();
   for (const Entity* domain : {&impl.main_domain, &impl.batch_domain, &impl.operate_domain}) {

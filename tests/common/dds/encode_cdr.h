@@ -15,10 +15,10 @@
 
 namespace shoal::dds {
 
-// For the types that are not bulk: with the header of four bytes.
+// Serialises types other than bulk types; includes the header of four bytes.
 template <class M>
 std::vector<uint8_t> EncodeCdr(const M& message) {
-  constexpr uint32_t kXcdr2 = 2;  // what appendable types are serialised as
+  constexpr uint32_t kXcdr2 = 2;  // encoding of appendable types
   WireBuffers buffers;
   const auto wire = ToWire(message, &buffers);
   dds_ostream_t out;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A message of each kind from one process to another.
+// Sends messages of each kind from one process to another.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -21,7 +21,7 @@ inline std::string Expected(const std::string& name, uint64_t n, size_t payload_
   return "got " + name + " " + text;
 }
 
-// Message `n` of `name` arrives at the receiver with every field as it was sent.
+// Tests that the receiver gets message `n` of `name` with every field unchanged.
 template <class M>
 inline void ExpectSame(PeerProcess& sender, PeerProcess& receiver, const std::string& name,
                        uint64_t n = 41) {

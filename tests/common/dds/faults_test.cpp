@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Processes killed, stopped, cut off and shouted at.
+// Processes that are killed, stopped, cut off or flooded with packets.
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

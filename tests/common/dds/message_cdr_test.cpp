@@ -82,8 +82,8 @@ std::string ReadAmong(uint8_t neighbour, const Bytes& cdr) {
   return taken ? Describe(back) : "refused";
 }
 
-// Also with sizes that fit: fields at the end are then absent, or cut in two. Nothing outside of
-// the bytes decides what is read of them.
+// Also with sizes that fit, so that fields at the end are absent or cut. The result must depend on
+// the bytes only.
 TYPED_TEST(EveryMessage, CanHaveAnyNumberAnywhere) {
   const auto expect_own_bytes_alone = [](const Bytes& cdr, const std::string& what) {
     ASSERT_EQ(ReadAmong<TypeParam>(0x00, cdr), ReadAmong<TypeParam>(0xff, cdr)) << what;

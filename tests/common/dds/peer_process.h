@@ -17,11 +17,11 @@ class PeerProcess {
  public:
   // Starts it and waits until it has joined; fails the test otherwise (the reason is on stderr).
   PeerProcess(const std::string& role, const ClusterAddress& address);
-  // The coordinator of a domain that it claims; address() tells which.
+  // A coordinator that claims a domain (see address()).
   PeerProcess() : PeerProcess(std::string()) {}
-  // The same with a folder of credentials.
+  // A coordinator with a folder of credentials.
   explicit PeerProcess(const std::string& secure);
-  // Kills it when it has not ended.
+  // Kills the process if it has not ended.
   ~PeerProcess();
   PeerProcess(const PeerProcess&) = delete;
   PeerProcess& operator=(const PeerProcess&) = delete;
@@ -29,25 +29,25 @@ class PeerProcess {
   // Address of the claimed domain.
   const ClusterAddress& address() const { return address_; }
 
-  // Sends a command and returns the answer line; "got" lines in between are kept for NextGot. Empty
-  // when none comes within the deadline or the process is gone.
+  // Sends a command and returns the answer line, or "" at the deadline or if the process has ended.
+  // "got" lines that precede the answer are kept for NextGot.
   std::string Ask(const std::string& command,
                   std::chrono::milliseconds deadline = std::chrono::seconds(40));
   // Like Ask, in two steps.
   void Send(const std::string& command);
   std::string Answer(std::chrono::milliseconds deadline = std::chrono::seconds(40));
-  // The next "got" line; empty when none comes within the deadline.
+  // The next "got" line; empty at the deadline.
   std::string NextGot(std::chrono::milliseconds deadline = std::chrono::seconds(10));
 
   void Signal(int signal) const { kill(pid_, signal); }
   // SIGKILL, and waits for the end.
   void Kill();
-  // Tells it to end, and waits until it has.
+  // Asks the process to end, and waits for its end.
   void Quit();
 
  private:
   void Spawn(std::vector<std::string> arguments);
-  // The next line, whatever it is.
+  // The next line of either kind.
   std::string ReadLine(std::chrono::steady_clock::time_point end);
   std::string NextLine(bool want_got, std::chrono::milliseconds deadline);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Secured domains: each role does what it must and no more, strangers neither join nor read.
+// Secured domains: each role has only the permissions that it needs; strangers neither join nor
+// read.
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -30,7 +31,7 @@ using ::testing::StartsWith;
 
 class SecurityTest : public ::testing::Test {
  protected:
-  // A folder of credentials of an authority of its own.
+  // A folder of credentials from a separate authority.
   std::string Credentials(const std::string& name, const Validity& validity = ValidForDays(1)) {
     const auto folder = parent_.path() / name;
     CreateCredentials(folder, AllRoleRights(), validity);

@@ -203,7 +203,7 @@ TEST_P(ContractDeliveryTest, ALateReaderGetsTheLastNSamplesOfEachKey) {
   ExpectReceived(*actor, "WeightsPart", 2);
   ExpectReceived(*actor, "CreditsMessage", 16);
   ExpectReceived(*coordinator, "EvalMessage", 32);
-  // The next sample arrives behind the old ones.
+  // The next sample arrives after the old ones.
   Write(*learner, "WeightsPart", 6, 6, 1000, "1");
   Write(*replay, "CreditsMessage", 21, 21);
   Write(*eval, "EvalMessage", 41, 41);

@@ -56,7 +56,7 @@ class ContractTest : public ::testing::TestWithParam<Implementation> {
         << type;
   }
 
-  // Writes numbers FIRST to LAST; each is accepted in the end.
+  // Writes numbers FIRST to LAST and repeats refused writes until each is accepted.
   static void Write(ContractPeer& peer, const std::string& type, uint64_t first, uint64_t last,
                     size_t bytes = 1000, const std::string& key = "") {
     const uint64_t count = last - first + 1;
@@ -100,7 +100,7 @@ class ContractTest : public ::testing::TestWithParam<Implementation> {
     return all;
   }
 
-  // From now on a callback of the reader waits, for the message `number` from `writer`.
+  // Holds the reader's callbacks, and makes one wait by sending `number` from `writer`.
   static void HoldWith(ContractPeer& reader, ContractPeer& writer, const std::string& type,
                        uint64_t number) {
     ASSERT_EQ(reader.Ask("hold " + type), "ok");
@@ -108,7 +108,7 @@ class ContractTest : public ::testing::TestWithParam<Implementation> {
     ASSERT_EQ(reader.Ask("waiting " + type + " 20000"), "yes");
   }
 
-  // Writes FIRST and on until a write is refused; returns the number that was.
+  // Writes FIRST, FIRST + 1, ... until a write is refused. Returns the refused number.
   static uint64_t WriteUntilRefused(ContractPeer& writer, const std::string& type, uint64_t first,
                                     size_t bytes) {
     constexpr uint64_t kEnough = 100;

@@ -65,7 +65,7 @@ TEST_P(ContractLifeTest, ARestartedWriterHasNoHistoryButItsOwn) {
   const Peer actor = Join(Role::kActor);
   EXPECT_EQ(actor->Ask("subscribe WeightsPart"), "ok");
   ExpectReceived(*actor, "WeightsPart", 1);
-  // The next sample arrives behind anything old that there may be.
+  // The next sample would arrive after any old one.
   ExpectMatched(*learner, "WeightsPart", 1);
   Write(*learner, "WeightsPart", 11, 11, 1000, "1");
   ExpectReceived(*actor, "WeightsPart", 2);

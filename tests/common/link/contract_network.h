@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The part of an implementation of the link that the contract suite needs: members of a run, each
-// with a hub of its own, driven by the commands of peer_commands.h.
+// Members of a run, which each implementation of the link provides for the contract suite. Every
+// member has its own hub and executes the commands of peer_commands.h.
 #pragma once
 
 #include <chrono>
@@ -11,20 +11,20 @@
 
 namespace shoal::link {
 
-// One member of the run. Destroying it ends it, in order or not.
+// One member of the run. The destructor ends the member, cleanly or not.
 class ContractPeer {
  public:
   using milliseconds = std::chrono::milliseconds;
 
   virtual ~ContractPeer() = default;
   virtual void Send(const std::string& command) = 0;
-  // The next answer line; empty when none comes within the deadline.
+  // The next answer line; empty at the deadline.
   virtual std::string Answer(milliseconds deadline = std::chrono::seconds(40)) = 0;
-  // The next "got" line; empty when none comes within the deadline.
+  // The next "got" line; empty at the deadline.
   virtual std::string NextGot(milliseconds deadline = std::chrono::seconds(20)) = 0;
   // Destroys writers, readers and hub, and returns after that.
   virtual void Quit() = 0;
-  // Dies without a word. Only its destruction may follow.
+  // Ends the member without notice to the others. Only the destructor may be called afterwards.
   virtual void Kill() = 0;
 
   std::string Ask(const std::string& command) {
@@ -36,7 +36,7 @@ class ContractPeer {
 class ContractNetwork {
  public:
   virtual ~ContractNetwork() = default;
-  // At most one coordinator, learner and replay at a time.
+  // Adds a member. At most one coordinator, one learner and one replay may exist at a time.
   virtual std::unique_ptr<ContractPeer> Join(Role role) = 0;
 };
 

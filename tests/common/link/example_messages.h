@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Example messages numbered n, the same in every process, for tests that compare what was sent with
-// what arrived. Every field has a value of its own that depends on n.
+// Example messages with number n, equal in every process, for tests that compare sent and received
+// messages. Every field has its own value, which depends on n.
 #pragma once
 
 #include <fmt/core.h>
@@ -149,7 +149,7 @@ inline void Fill(uint64_t n, ReplyMessage* m) {
         .to = -0.5};
 }
 
-// The number n of a message, for counting what is missing.
+// The number n of a message, to count missing messages.
 inline uint64_t Number(const TransitionChunk& m) { return m.first_sequence; }
 inline uint64_t Number(const CreditsMessage& m) { return m.credits.at(0).stored; }
 inline uint64_t Number(const SampleRequest& m) { return m.request; }
@@ -165,7 +165,7 @@ inline uint64_t Number(const RunViewMessage& m) { return m.updates; }
 inline uint64_t Number(const CommandMessage& m) { return m.request; }
 inline uint64_t Number(const ReplyMessage& m) { return m.request; }
 
-// Builds message n and calls use(message) while its payload lives.
+// Builds message n and calls use(message). The payload is valid during the call.
 template <class M, class Use>
 void WithExample(uint64_t n, const std::vector<uint8_t>& payload, const Use& use) {
   M message;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages as text with every field, for tests that compare what was sent with what arrived.
+// Messages as text with every field, for tests that compare sent and received messages.
 #pragma once
 
 #include <fmt/core.h>

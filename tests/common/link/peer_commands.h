@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// The far side of tests of the link: carries out text commands on a hub. dds_peer runs them in a
-// process of its own, tests of the link within one process on a thread (contract_network.h).
+// The far side of tests of the link: executes text commands on a hub. dds_peer runs them in a
+// separate process, tests of the link in memory on a thread (contract_network.h).
 //
 // T is the name of a message type. Each command has one answer line:
 //
-//   subscribe T                makes the reader and counts what arrives; "ok"
-//   show T                     the same, and says "got T DESCRIPTION" for each message
-//   unsubscribe T              destroys the reader, on a thread of its own; "ok"
-//   unsubscribed T MS          waits for the end of that; "yes" or "no"
+//   subscribe T                makes the reader and counts messages; "ok"
+//   show T                     the same, and prints "got T DESCRIPTION" for each message
+//   unsubscribe T              starts a thread that destroys the reader; "ok"
+//   unsubscribed T MS          waits for the end of that thread; "yes" or "no"
 //   publish T                  makes the writer; "ok"
 //   unpublish T                destroys the writer; "ok"
 //   match T N MS               waits until reader and writer of T together have N peers;
 //                              "matched N"
 //   write T FIRST COUNT BYTES [KEY]
-//                              writes numbered messages, repeating those that are refused;
+//                              writes numbered messages and repeats refused writes;
 //                              "wrote COUNT refused N seconds S"
 //   scribble T FIRST COUNT BYTES
-//                              the same, each with a payload of its own number, from one buffer
-//                              that is overwritten after each write, and on a thread each
+//                              the same, each on a new thread with the payload of its number, from
+//                              one buffer that is overwritten after each write
 //   try T N BYTES              one write; "sent MS" or "refused MS"
-//   announce T N BYTES         the same; says "got trying T" right before the write
+//   announce T N BYTES         the same; prints "got trying T" directly before the write
 //   received T COUNT MS        waits for COUNT messages; "received N gaps N bytes N malformed N"
 //   seen T                     "seen KEY:NUMBER ...", every message in the order of the callbacks
 //   hold T                     callbacks of T wait from now on; "ok"
@@ -27,7 +27,7 @@
 //   waiting T MS               waits until a callback waits; "yes" or "no"
 //   overlaps T                 callbacks that began before the one before them ended; "overlaps N"
 //   acknowledged T MS          "yes" or "no"
-//   malformed                  of the hub; "malformed TOPIC:N ..."
+//   malformed                  the hub's counts of malformed messages; "malformed TOPIC:N ..."
 //   answer                     stores nothing, but answers every chunk with a credit; "ok"
 //   roundtrip COUNT BYTES      chunk out, credit back, COUNT > 1 times; "microseconds MEDIAN MAX,
 //                              first FIRST": the first one waits for the reader's side of matching
@@ -46,12 +46,12 @@ class PeerCommands {
  public:
   // Borrows the hub. `say` gets the "got" lines and may be called on any thread.
   PeerCommands(Hub& hub, std::function<void(const std::string&)> say);
-  // Releases what is held.
+  // Releases held callbacks.
   ~PeerCommands();
   PeerCommands(const PeerCommands&) = delete;
   PeerCommands& operator=(const PeerCommands&) = delete;
 
-  // The answer. One command at a time.
+  // Executes one command and returns its answer. One call at a time.
   std::string Run(const std::string& line);
 
   class Endpoint;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The commands about one message type (peer_commands.h says what each does).
+// The commands for one message type (described in peer_commands.h).
 #pragma once
 
 #include <algorithm>
@@ -49,7 +49,7 @@ class PeerCommands::Endpoint {
   virtual bool Acknowledged(milliseconds deadline) = 0;
 };
 
-// Gives a message the key `key`; does nothing to a message of a topic without keys.
+// Sets the key of a message. Does nothing if the topic has no keys.
 template <class M>
 void SetKey(uint64_t, M*) {}
 inline void SetKey(uint64_t key, WeightsPart* m) { m->part = static_cast<uint32_t>(key); }
@@ -173,7 +173,7 @@ class PeerEndpoint final : public PeerCommands::Endpoint {
 
   void OnMessage(const M& message, bool show) {
     if (running_.exchange(true)) ++overlaps_;
-    std::this_thread::yield();  // room for another callback, if it were allowed
+    std::this_thread::yield();  // gives a forbidden concurrent callback a chance to run
     {
       std::unique_lock lock(mutex_);
       ++waiting_;

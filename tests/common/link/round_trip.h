@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A chunk and the credit that answers it, as between an actor and a replay.
+// Round trips of a chunk and the credit that answers it, as between actor and replay.
 #pragma once
 
 #include <condition_variable>
@@ -14,7 +14,7 @@
 
 namespace shoal::link {
 
-// Answers each chunk with a credit from a thread of its own, as a replay does.
+// Answers each chunk with a credit from a separate thread, like a replay.
 class PeerCommands::Answerer {
  public:
   explicit Answerer(Hub& hub);
@@ -30,7 +30,7 @@ class PeerCommands::Answerer {
   Reader<TransitionChunk> reader_;
 };
 
-// The command "roundtrip": its answer.
+// Executes the command "roundtrip" and returns its answer.
 std::string RoundTrip(Hub& hub, uint64_t count, size_t payload_bytes);
 
 }  // namespace shoal::link

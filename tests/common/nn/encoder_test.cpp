@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Encoders whose layers have several readers: skips and pools together, against their doubles in
-// double.
+// Compares encoders whose layers have several readers (skips and pools together) with references in
+// double precision.
 #include "common/nn/encoder.h"
 
 #include <cmath>
@@ -15,8 +15,8 @@ using reference::Values;
 
 constexpr int kEncoded = 3;
 
-// Pixels (2, 13, 11), a stem, a block around which its input goes as it is, one around which it is
-// convolved, averages of 2x3.
+// Pixels (2, 13, 11), a stem, a block with an identity skip, a block with a convolved skip,
+// averages of 2x3.
 NetworkPlan ResidualPlan() {
   NetworkPlan plan({2, 13, 11});
   plan.AddPixels(1, "k", PixelRange::kUnit);
@@ -105,8 +105,8 @@ TEST_P(ResidualEncoderTest, GradientsOfAllReadersOfAMapAreSummed) {
     all.insert(all.end(), some.begin(), some.end());
     all_exact.insert(all_exact.end(), exact.begin(), exact.end());
   }
-  // In bf16 units at the edge of their ReLU are on the other side than in double; the direction of
-  // the whole is what is left to compare.
+  // In bf16, ReLUs with inputs near 0 are on the other side than in double. Only the direction of
+  // the whole gradient can be compared.
   EXPECT_GT(Dot(all, all_exact) / std::sqrt(Dot(all, all) * Dot(all_exact, all_exact)),
             GetParam() == Precision::kF32 ? 0.9999 : 0.95);
 }

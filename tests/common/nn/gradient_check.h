@@ -29,11 +29,11 @@ inline double RelativeError(std::span<const float> fast, const reference::Values
   return error / scale;
 }
 
-// f32 products differ from double by rounding alone; bf16 has 8 bits of mantissa, and an error of a
-// few per cent is left after sums of independent roundings through several layers.
+// f32 products differ from double only by rounding. bf16 has 8 bits of mantissa: rounding through
+// several layers leaves an error of a few per cent.
 inline double Tolerance(Precision precision) { return precision == Precision::kF32 ? 2e-5 : 0.04; }
 
-// In [-1, 1], exact in f32 and not in bf16: a layer that rounds what it should not is seen.
+// Values in [-1, 1], exact in f32 but not in bf16: wrong rounding in a layer is detected.
 inline reference::Values RandomValues(size_t n, uint64_t key) {
   Random random(key);
   reference::Values values(n);
@@ -49,7 +49,7 @@ inline reference::Values ToDoubles(std::span<const float> values) {
   return {values.begin(), values.end()};
 }
 
-// d loss / d value by central differences; `value` is put back.
+// d loss / d value by central differences; restores `value`.
 inline double CentralDifference(double* value, const std::function<double()>& loss) {
   constexpr double kStep = 1e-6;  // small, so that it seldom crosses the edge of a ReLU
   const double former = *value;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Encoder, actor and critic as algorithms use them: options of the heads, which loss trains an
-// encoder, targets, against the double in double.
+// Compares encoder, actor and critic, as algorithms use them, with a reference in double precision:
+// options of the heads, the loss that trains an encoder, targets.
 #include <gmock/gmock.h>
 
 #include "common/nn/actor_module.h"

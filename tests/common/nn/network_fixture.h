@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A small network with odd sizes, random parameters and inputs, and its double in double.
+// A small network with odd sizes, random parameters and inputs, and its copy in double precision.
 #pragma once
 
 #include <memory>
@@ -67,7 +67,7 @@ class NetworkTest : public LayerTest {
     encoder_.reset();  // reads the parameters before
     parameters_ = std::make_unique<ParameterSet>(AllParameters(network_, spec_),
                                                  ParameterSet::Use::kTraining);
-    // Initialised, then moved off the special values of biases and norms.
+    // Initialised, then changed so that biases and norms have no special values.
     parameters_->Initialise(1);
     Random random(2);
     for (int64_t i = 0; i < parameters_->size(); ++i) {
@@ -84,7 +84,8 @@ class NetworkTest : public LayerTest {
         std::make_unique<Encoder>(Context(*parameters_, kBatch), PlanEncoder(network_, spec_));
     encoder_->Refresh();
     encoder_->Forward(frames_.data(), Statistics::kBatch);
-    // The heads are compared on the features they really got, so that each test measures its layer.
+    // The heads are compared with the same features as input, so that each test measures its layer
+    // only.
     features_ = ToDoubles(ReadMemory(encoder_->features()));
   }
 
@@ -106,8 +107,8 @@ class NetworkTest : public LayerTest {
     }
   }
 
-  // A gradient has passed more layers than an output, and in bf16 units at the edge of a ReLU may
-  // be on its other side than in double.
+  // A gradient passes more layers than an output. In bf16, a ReLU with an input near 0 may also be
+  // on the other side than in double.
   double GradientTolerance() const { return GetParam() == Precision::kF32 ? 2e-4 : 0.15; }
 
   NetworkConfig network_;

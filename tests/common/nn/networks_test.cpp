@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Encoder, actor and critic against their doubles in double: outputs, and gradients by central
-// differences.
+// Compares encoder, actor and critic with references in double precision: outputs, and gradients by
+// central differences.
 #include "common/nn/actor_head.h"
 #include "common/nn/critic_heads.h"
 #include "common/nn/host_memory.h"
@@ -93,8 +93,8 @@ TEST_P(NetworksTest, CriticAgreesWithTheReferenceOnTheVectorAlone) {
   CompareCritic();
 }
 
-// In f32 alone: without LayerNorm a unit that bf16 puts on the other side of its ReLU weighs too
-// much to compare.
+// Only in f32: without LayerNorm, a ReLU that is on the other side in bf16 has too much weight for
+// a comparison.
 class NetworksF32Test : public NetworksTest {};
 
 TEST_P(NetworksF32Test, CriticAgreesWithTheReferenceWithoutLayerNormInTheMlps) {
@@ -136,8 +136,8 @@ class EncoderKindTest : public NetworksTest {
     const Values exact = reference_->Features(kBatch, frames_.data());
     EXPECT_LT(RelativeError(ReadMemory(encoder_->features()), exact), Tolerance(GetParam()));
 
-    // The first layer's gradient has passed all others; each kind of layer has a test of its own in
-    // both precisions.
+    // The first layer's gradient has passed all other layers. Each kind of layer has its own test
+    // in both precisions.
     if (GetParam() != Precision::kF32) return;
     const Values dfeatures = RandomValues(exact.size(), 8);
     FillMemory(dfeatures, encoder_->features_gradient());

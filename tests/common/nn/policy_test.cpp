@@ -56,7 +56,7 @@ TEST_P(PolicyTest, EveryBatchSizeGivesTheReferencesResult) {
     const auto first = [&](const reference::Values& values) {
       return reference::Values(values.begin(), values.begin() + batch * 3);
     };
-    // Twice the tolerance of a head: the encoder's rounding comes on top.
+    // Twice the tolerance of a head, because the encoder rounds too.
     EXPECT_LT(RelativeError(output.mean, first(exact.mean)), 2 * Tolerance(GetParam())) << batch;
     EXPECT_LT(RelativeError(output.log_std, first(exact.log_std)), 2 * Tolerance(GetParam()));
   }
@@ -97,7 +97,7 @@ NetworkConfig EvenNetwork() {
   return network;
 }
 
-// To the last bit: of what came as bf16 nothing is lost, and nothing rounded twice.
+// Equal in every bit: values that arrived as bf16 are neither changed nor rounded again.
 TEST_P(PolicyTest, ActsByRoundedWeightsAsByTheSameNumbersInF32) {
   for (const NetworkConfig& network : {OddNetwork(), EvenNetwork()}) {
     for (const bool pixels : {true, false}) {
@@ -145,7 +145,7 @@ TEST_P(PolicyTest, SharesAFilesBytesUntilTheNextOnes) {
   EXPECT_TRUE(kept.expired());
 }
 
-// A file may lie anywhere, and its tensors anywhere in it.
+// A file may have any alignment in memory, and its tensors any offset.
 TEST_P(PolicyTest, TakesTensorsAtOddAddresses) {
   Build(/*pixels=*/true);
   for (const TensorMap& tensors : {Tensors(), ToBf16(Tensors())}) {
@@ -202,7 +202,7 @@ TEST_P(PolicyTest, ComputesAVectorsFirstLayerInF32) {
       Tolerance(Precision::kF32));
 }
 
-// The weights say which kind they are.
+// The weights determine the kind of policy.
 TEST_P(PolicyTest, ADeterministicPolicyHasNoDeviation) {
   Build(/*pixels=*/true);
   const ActorPlan plan = PlanActor(network_, spec_, ActorOutput::kDeterministic);
@@ -246,7 +246,7 @@ TEST(ActorOutputOf, IsWhatTheTensorsSay) {
   EXPECT_EQ(ActorOutputOf(tensors, 6), ActorOutput::kUnsquashed);
 }
 
-// Acting by statistics of the batch would make an action depend on who acts beside it.
+// Statistics of the batch would make an action depend on the other environments of the batch.
 TEST_P(PolicyTest, WithBatchNormalisationAnActionDoesNotDependOnTheBatch) {
   NetworkConfig network = OddNetwork();
   network.encoder = "resnet18";

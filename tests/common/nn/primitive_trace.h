@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which oneDNN primitives a piece of work runs, to run them again without what lies between them:
-// the least time that the work can take with these primitives.
+// Records the oneDNN primitives of a piece of work and runs them again without the code between
+// them. Their time is the least that the work can take with these primitives.
 //
-// A program that uses this is linked with dnnl_primitive_execute wrapped (the library's link option
-// says so): nothing of the product knows.
+// A program that uses this header wraps dnnl_primitive_execute by a link option of the library. The
+// product does not depend on the trace.
 #pragma once
 
 #include <dnnl.h>
@@ -15,19 +15,19 @@ namespace shoal::nn {
 
 class PrimitiveTrace {
  public:
-  // Runs `work`, which runs its primitives in this thread. What they read and write stays borrowed:
-  // the networks of `work` outlive the trace.
+  // Runs `work`, which runs its primitives in this thread. Borrows the memory of the primitives:
+  // the networks of `work` must outlive the trace.
   explicit PrimitiveTrace(const std::function<void()>& work);
 
-  // Those of some kind alone; the same primitives, in the same order.
+  // Selects primitives by kind; their order is kept.
   enum class Part { kAll, kConvolutions };
-  // Runs them in this thread, one after another, over memory as the work left it.
+  // Runs the primitives in this thread, one after another, on the memory of the work.
   void Run(Part part = Part::kAll) const;
   size_t Count(Part part = Part::kAll) const;
   // Multiplications and additions of the convolutions, forward and backward, padding included.
   double ConvolutionOperations() const;
 
-  // One execution. For the wrapped function.
+  // One execution; used by the wrapped function.
   struct Execution {
     const_dnnl_primitive_t primitive;
     dnnl_stream_t stream;

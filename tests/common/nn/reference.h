@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Naive layers in double, for comparison with the fast ones. Written from the formulas in the
-// layers' headers, loop by loop; speed is no concern. Arrays are row-major.
+// Naive layers in double, for comparison with the fast ones. They implement the formulas in the
+// layers' headers with simple loops. Arrays are row-major.
 #pragma once
 
 #include <vector>

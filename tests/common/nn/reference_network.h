@@ -30,7 +30,7 @@ class Network {
   // Takes the F32 tensors; the others are ignored.
   Network(const TensorMap& tensors, const NetworkConfig& config, const ObservationSpec& spec);
 
-  // One value of one parameter, to be changed and put back.
+  // One value of one parameter, for finite differences.
   double& at(const std::string& name, size_t index) { return parameters_.at(name).at(index); }
   const Parameters& parameters() const { return parameters_; }
 

@@ -22,8 +22,8 @@ std::vector<float> ValuesOf(const ParameterSet& set) {
   return {set.values(), set.values() + set.size()};
 }
 
-// Optimisers of replicas side by side, each of two sets whose values all share, and one alone that
-// gets the mean of their gradients. The first set is smaller than what there is to share out.
+// Optimisers of replicas, each with two sets of shared values, and a single optimiser that gets the
+// mean of their gradients. The first set is smaller than the smallest unit that replicas share out.
 class ReplicatedAdamTest : public testing::TestWithParam<int> {
  protected:
   struct Optimised {

@@ -103,8 +103,8 @@ TEST(Safetensors, EveryTruncationIsRefused) {
   EXPECT_THROW(ReadSafetensors(file + "x", "long"), Error);
 }
 
-// A flipped bit in the header may change a name or the padding, which no reader can know; it must
-// never crash, and what is read must be consistent.
+// A flipped bit in the header may change a name or the padding, which a reader cannot detect. The
+// reader must never crash, and the result must be consistent.
 TEST(Safetensors, AFlippedHeaderBitIsRefusedOrGivesAConsistentMap) {
   const std::string file = WriteSafetensors(Sample(), {{"k", "v"}});
   uint64_t length = 0;

@@ -9,7 +9,7 @@
 namespace shoal::nn {
 namespace {
 
-// More of them than cores: some of them sleep.
+// More threads than cores, so that some threads sleep.
 TEST(Barrier, ShowsEachWhatAllWroteBefore) {
   constexpr int kParties = 5, kRounds = 300;
   Barrier barrier(kParties);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// resnet18 and alexnet, held to what torchvision computes from the same weights and images:
-// tests/comparison/torchvision_encoders.py recorded it and says what the files hold.
+// Compares resnet18 and alexnet with torchvision for equal weights and images.
+// tests/comparison/torchvision_encoders.py made the recordings and describes the files.
 #include <gmock/gmock.h>
 
 #include <cmath>

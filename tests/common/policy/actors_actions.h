@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The actor's actions by a checkpoint's policy: the reference for acting outside of training.
+// Actions of the actor program with a checkpoint's policy: the reference for policies outside of
+// training.
 #pragma once
 
 #include <algorithm>

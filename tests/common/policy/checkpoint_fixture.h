@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checkpoints of small agents, written as the learner writes them.
+// Checkpoints of small agents, written like those of the learner.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +18,7 @@
 
 namespace shoal::policy {
 
-// Frames beside two observed blocks, and one that the policy does not see between them.
+// Observations of frames, an observed block, an unobserved block, and another observed block.
 inline RunConfig SmallRun(const std::string& algorithm, bool pixels) {
   RunConfig run{learner::SmallConfig(), learner::SmallSpec()};
   run.config.learner.algorithm = algorithm;
@@ -39,7 +39,7 @@ inline RunConfig SmallRun(const std::string& algorithm, bool pixels) {
   return run;
 }
 
-// The same with another encoder and images that it takes.
+// The same with another encoder and images of a size that the encoder accepts.
 inline RunConfig RunWithEncoder(const std::string& encoder, int side = 84) {
   RunConfig run = SmallRun("sac", /*pixels=*/true);
   run.config.network.encoder = encoder;
@@ -50,7 +50,7 @@ inline RunConfig RunWithEncoder(const std::string& encoder, int side = 84) {
   return run;
 }
 
-// Writes a checkpoint to FOLDER/checkpoints as the learner does, and returns its folder.
+// Writes a checkpoint to FOLDER/checkpoints like the learner, and returns its folder.
 inline std::filesystem::path Store(const RunConfig& run, const std::filesystem::path& folder,
                                    uint64_t updates, const nn::TensorMap& learner,
                                    const nn::TensorMap& policy) {
@@ -79,8 +79,7 @@ inline std::filesystem::path WriteCheckpointOf(const RunConfig& run,
   return Store(run, folder, agent->updates(), agent->AllTensors(), agent->AveragedPolicyTensors());
 }
 
-// Checkpoint of a policy with random parameters only: for encoders whose optimisers would be large
-// files.
+// Checkpoint of a policy with random parameters only, for encoders with large optimiser states.
 inline std::filesystem::path WritePolicyOf(const RunConfig& run,
                                            const std::filesystem::path& folder) {
   nn::ParameterSet parameters(nn::PolicyParameters(run.config.network, run.spec),

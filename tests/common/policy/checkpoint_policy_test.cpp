@@ -42,8 +42,8 @@ class CheckpointPolicyTest : public testing::Test {
     WriteFileAtomically(checkpoint_ / file, bytes);
   }
 
-  // Changes policy.json, or state.json by the function, and brings the checksums up to date: what
-  // another version, not damage, would look like.
+  // Changes policy.json, or state.json by the function, and updates the checksums, so that the
+  // checkpoint looks like one of another version, not like a damaged one.
   template <class Change>
   void Rewrite(Change change) const {
     ordered_json description = ordered_json::parse(ReadFile(checkpoint_ / kDescriptionFile));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The library as a user has it: installed, found by CMake, without what only training needs.
+// The installed library as a user has it: found by CMake, without the dependencies of training.
 #include <gmock/gmock.h>
 
 #include <fstream>

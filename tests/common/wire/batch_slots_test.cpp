@@ -75,7 +75,7 @@ TEST_F(BatchSlotsTest, ASlotIsWrittenAgainOnlyOnceItIsReleased) {
   writer_.Release(1);
   EXPECT_EQ(writer_.held(), 2u);
   EXPECT_EQ(Fill(4).slot, slot);
-  writer_.Release(1);  // a word that comes late
+  writer_.Release(1);  // a late message
   EXPECT_EQ(writer_.held(), 3u);
   writer_.Release(4);
   EXPECT_EQ(writer_.held(), 0u);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A point on a line. Each step looks for a file CRASH_FOLDER/NAME, where the variable
-// SHOAL_TEST_CRASH_FOLDER names the folder and NAME is the process's: "actor-1", "eval". While the
-// file exists the process crashes as a null pointer does. A step takes three milliseconds, so that
-// a run that waits for something leaves the processors to others.
+// SHOAL_TEST_CRASH_FOLDER names the folder and NAME is that of the process: "actor-1", "eval".
+// While the file exists, the process crashes as with a null pointer. A step takes three
+// milliseconds, so that a waiting run leaves the processors to others.
 #include <mujoco/mujoco.h>
 
 #include <chrono>
@@ -34,7 +34,7 @@ constexpr char kModel[] = R"(
   <actuator><motor joint="x" ctrlrange="-1 1" ctrllimited="true"/></actuator>
 </mujoco>)";
 
-// The file whose existence makes this process crash; empty = none.
+// The file that makes this process crash if it exists; empty = none.
 std::filesystem::path CrashFile() {
   const char* folder = std::getenv("SHOAL_TEST_CRASH_FOLDER");
   if (folder == nullptr) return {};

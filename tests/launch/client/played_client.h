@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A client and the server of a coordinator on one link in memory and on simulated time, so that
-// deadlines of a minute take none.
+// A client and a coordinator's server on one link in memory and on simulated time, so that long
+// deadlines do not delay tests.
 #pragma once
 
 #include <functional>
@@ -21,9 +21,9 @@ namespace shoal::launch {
 // How a command ended.
 struct PlayedClient {
   int code = -1;
-  std::string error;               // of the Error that ended it
-  std::vector<std::string> lines;  // that it said
-  double seconds = -1;             // that it took; below 0 if it has not ended in two hours
+  std::string error;               // message of the Error that ended it
+  std::vector<std::string> lines;  // printed lines
+  double seconds = -1;             // duration; below 0 if it has not ended within two hours
 };
 
 // A report with one figure.
@@ -40,12 +40,12 @@ inline MetricsMessage ReportOf(const std::string& role, uint32_t id, const std::
 
 // A coordinator: its views and its replies.
 struct PlayedCoordinator {
-  double uptime = 0;  // s, when it begins
+  double uptime = 0;  // s, at the start
   bool accepts = true;
   std::string text = "done";  // of its replies
   std::string state = "running";
-  std::vector<MetricsMessage> processes{};  // beside its own
-  int commands = 0;                         // that came
+  std::vector<MetricsMessage> processes{};  // in addition to its own
+  int commands = 0;                         // number received
 
   // Serves for `span`.
   void Serve(RunServer& server, std::chrono::milliseconds span) {
@@ -73,7 +73,7 @@ struct PlayedCoordinator {
   }
 };
 
-// Runs `command` as a client of the coordinator that `coordinator` plays.
+// Runs `command` as a client of the simulated coordinator.
 inline PlayedClient PlayClient(
     const std::function<void(RunServer&)>& coordinator,
     const std::function<int(RunClient&, const std::function<void(const std::string&)>&)>& command) {

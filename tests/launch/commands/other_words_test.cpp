@@ -22,7 +22,7 @@ using Words = std::vector<std::string>;
 class OtherWords : public testing::Test {
  protected:
   Words Taken(const Words& words) const { return AsCommandsTakeThem(*app_, words); }
-  // The error for a command line that is refused.
+  // The error message for a refused command line.
   std::string Refusal(const Words& words) const {
     return UsageMessage([&] { ParseCommandLine(app_.get(), Taken(words), HintForWord); });
   }

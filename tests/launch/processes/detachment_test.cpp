@@ -17,8 +17,8 @@
 namespace shoal::launch {
 namespace {
 
-// A process that detaches `body` and exits with the code that the parent's side received; `body`
-// gets the detachment and returns the detached process's exit code.
+// A process that detaches `body` and exits with the exit code that the parent received. `body` gets
+// the detachment and returns the exit code of the detached process.
 pid_t Launch(const std::function<int(Detachment&)>& body) {
   const pid_t pid = fork();
   if (pid != 0) return pid;

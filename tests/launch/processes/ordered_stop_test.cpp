@@ -16,7 +16,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-// Fake programs obey an announcement by waiting for the file of its name.
+// Fake programs react to an announcement: they wait for a file with its name.
 class OrderedStop : public ::testing::Test {
  protected:
   void Start(const std::string& role, const std::string& script) {

@@ -118,7 +118,7 @@ TEST_F(RemoteHostTest, WhatALoginPrintsIsNoAnswer) {
   Write(host_.run / "made" / "actor-2-5.page", std::string("grown\n\0\n", 8));
   FetchSequenceLogs(host_, actors, run_, Never);
   EXPECT_EQ(ReadFile(run_ / "made" / "actor-2-5.page"), std::string("grown\n\0\n", 8));
-  // A login that swallows what its command says.
+  // A login shell that discards the output of its command.
   host_.ssh = {"sh", "-c", "sh -c \"$0\" > /dev/null; echo Welcome"};
   EXPECT_THAT(Mistake([&] { FetchSequenceLogs(host_, actors, run_, Never); }),
               AllOf(HasSubstr("host far"), HasSubstr("its answer was not passed on whole")));

@@ -45,7 +45,7 @@ class SupervisorTest : public ::testing::Test {
     }
     return starts;
   }
-  // Polls until the run fails; its reason.
+  // Polls until the run fails. Returns the reason.
   std::string WaitForFailure() {
     std::optional<std::string> failure;
     EXPECT_TRUE(WaitUntil([&] { return (failure = supervisor_.Poll(Now())).has_value(); }));

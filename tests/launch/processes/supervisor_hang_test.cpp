@@ -50,8 +50,8 @@ TEST_F(SupervisorTest, GivesAProcessLongerForItsFirstReport) {
   EXPECT_THAT(said_, ElementsAre(HasSubstr("no report for 120 s")));
 }
 
-// Process numbers of two hosts have nothing to do with each other: here those of the actor over
-// there, whose child on this side is the remote shell, are those of the actor here.
+// Pids of two hosts are independent. The local child of a remote actor is the remote shell; in this
+// test the remote actor has the same pid as the local actor.
 TEST_F(SupervisorTest, HearsAProcessElsewhereWhateverItsPid) {
   ProcessSpec there = Fake("actor", 1, "exec sleep 60");
   there.elsewhere = true;

@@ -91,7 +91,7 @@ TEST_F(EvaluationsTest, RefusesFiguresThatCannotBe) {
   EXPECT_TRUE(refused("/aggregate/success_rate", -0.1));
   EXPECT_TRUE(refused("/aggregate/return_mean", "1e999"));
   EXPECT_TRUE(refused("/episodes", nlohmann::json::array()));
-  // Another evaluation than the message says.
+  // The JSON describes another evaluation than the message.
   EXPECT_TRUE(refused("/env_steps", 2));
   EXPECT_TRUE(refused("/weights_version/update", 2));
   EXPECT_TRUE(refused("/weights_version/session", 2));

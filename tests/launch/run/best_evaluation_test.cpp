@@ -52,8 +52,8 @@ TEST(BestEvaluation, OneThatIsOutdoneGivesWayToTheOneThatDidIt) {
   EXPECT_EQ(BestReturn({Point(0.9, -0.5), Point(1.0, -1.5)}), -1.5);
 }
 
-// The second is within chance of the third and has the better return, though the first outdid it
-// when it came.
+// The second is within chance of the third and has the better return, although the first was better
+// at the time of the second.
 TEST(BestEvaluation, DoesNotDependOnTheOrder) {
   std::vector<EvaluationPoint> points{Point(0.96, -0.5), Point(0.98, -0.6), Point(1.0, -0.9),
                                       Point(0.94, -0.55)};

@@ -19,7 +19,7 @@ using ::testing::SizeIs;
 
 const SteadyTime kStart = SteadyTime() + std::chrono::seconds(1000);
 
-// On a bus of its own, where a message arrives before its Write returns.
+// Uses a separate bus, on which a message arrives before its Write returns.
 class ControlSenderTest : public testing::Test {
  protected:
   void SetUp() override {

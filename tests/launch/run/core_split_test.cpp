@@ -15,12 +15,12 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-// A run whose processes take what the model says, or what `update_factor` makes of it.
+// A run whose processes have the costs of the model, with updates multiplied by `update_factor`.
 class ModelRun {
  public:
   explicit ModelRun(const CoreCosts& costs, const Split& split) : costs_(costs), split_(split) {}
 
-  // So many seconds, in looks of one each.
+  // Simulates this number of seconds, with one Look per second.
   std::vector<CoreSplit::Move> Run(CoreSplit& division, double seconds) {
     std::vector<CoreSplit::Move> moves;
     for (double end = seconds_ + seconds; seconds_ < end; ++seconds_) {
@@ -164,7 +164,7 @@ TEST(CoreSplit, UpdatesTooFewToMeasureMoveNothing) {
   EXPECT_TRUE(division.done());
 }
 
-// The tenth update comes with the twentieth second: the run keeps still, whatever it promises.
+// The tenth update arrives at the twentieth second, too late to change the division.
 TEST(CoreSplit, AMeasurementThatEndsTooLateMovesNothing) {
   CoreCosts slow = Flagship();
   slow.update = 1.75;

@@ -24,7 +24,7 @@ M ReportOf(const std::string& role, uint32_t id) {
   return report;
 }
 
-// On a bus of its own, where a message arrives before its Write returns.
+// Uses a separate bus, on which a message arrives before its Write returns.
 class RunInboxTest : public testing::Test {
  protected:
   void SetUp() override {

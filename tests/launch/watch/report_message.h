@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A process's report, as it comes from the network.
+// A process's report, as received from the network.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gradients of one update, read off Adam's first moment, which was 0 before: m = (1 - 0.9) g.
+// Gradients of one update, computed from Adam's first moment, which was 0 before: m = (1 - 0.9) g.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 
 namespace shoal::learner {
 
-constexpr double kFirstMoment = 0.1;  // of a gradient, after the first update
+constexpr double kFirstMoment = 0.1;  // share of the gradient after the first update
 
 // Compares Adam's moments in the tensors `after` an update with central differences of `loss`,
 // which reads `network`: for some entries of each parameter whose name starts with `prefix`.

@@ -19,7 +19,7 @@
 
 namespace shoal::learner {
 
-// A batch with memory of its own, filled with random values. A rollout is one of one environment.
+// A batch that owns its memory, filled with random values. A rollout has one environment.
 class RandomBatch {
  public:
   RandomBatch(const ObservationSpec& spec, int batch, uint64_t key, bool rollout = false)
@@ -53,7 +53,7 @@ class RandomBatch {
   AlignedBytes memory_;
 };
 
-// 18x16 grey frames in stacks of 2 beside a vector of 2, 2 actions.
+// 18x16 grey frames in stacks of 2, a vector of 2 and 2 actions.
 inline ObservationSpec SmallSpec() {
   ObservationSpec spec;
   spec.task = "test";
@@ -79,7 +79,7 @@ inline Config SmallConfig() {
   return config;
 }
 
-// NaN, which equals nothing, where the update did not compute it.
+// The figure; NaN, which never compares equal, if the update did not compute the figure.
 inline double Get(const UpdateOutcome& outcome, const Figure& figure) {
   return outcome.figures.Get(figure).value_or(std::nan(""));
 }
@@ -91,9 +91,9 @@ inline std::vector<float> Floats(const nn::TensorMap& tensors, const std::string
   return values;
 }
 
-// A bandit: reward -(a - s0 / 2)^2, every step terminal. The best action is s0 / 2; a policy that
-// ignores the state is off by 0.25 on average, uniform actions by 0.56. How far the policy of an
-// agent that `make` makes, in the place of MakeAgent, is off after 400 updates.
+// Mean error of an agent's policy after 400 updates on a bandit with reward -(a - s0 / 2)^2, where
+// every step is terminal. `make` replaces MakeAgent. The best action is s0 / 2. The mean error of a
+// policy that ignores the state is 0.25, that of uniform actions 0.56.
 template <class Make>
 float BanditError(Config config, Make make) {
   ObservationSpec spec;
@@ -127,8 +127,8 @@ float BanditError(Config config, Make make) {
   return error;
 }
 
-// Adds noise to every value of the F32 tensors whose names start with `prefix`: targets then differ
-// as after many updates.
+// Adds noise to every value of the F32 tensors whose names start with `prefix`, so that target
+// networks differ as after many updates.
 inline nn::TensorMap Perturbed(nn::TensorMap tensors, const std::string& prefix) {
   Random random(11);
   for (auto& [name, tensor] : tensors) {

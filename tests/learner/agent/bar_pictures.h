@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Grey pictures for bandits: a bright bar on a dark ground, and how far an action misses it.
+// Grey pictures for bandits: a bright bar on a dark ground, and the error of an action.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@ namespace shoal::learner {
 
 inline constexpr int kBarWidth = 3;  // pixels
 
-// Fills a picture of side x side with a bar whose left edge is column x. Its place: -1 at the left
-// side of the picture, 1 at the right one.
+// Fills a picture of side x side with a bar whose left edge is column x. Returns the bar's
+// position: -1 at the left side of the picture, 1 at the right side.
 inline float DrawBar(int x, int side, std::span<uint8_t> picture) {
   for (int i = 0; i < side * side; ++i) {
     const int column = i % side;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Batch normalisation in the encoder needs from an algorithm: statistics of the batch in the
-// passes that are trained, running ones in targets; running ones are state like any other.
+// Requirements of batch normalisation in the encoder: trained passes use statistics of the batch,
+// targets use running statistics, and running statistics are saved like other state.
 #include <gmock/gmock.h>
 
 #include "learner/agent/algorithms.h"

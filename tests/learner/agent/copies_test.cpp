@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows of one transition in a batch (Eq. 15): which of them its target is made of, and what they
-// weigh in the losses.
+// Rows of one transition in a batch (Eq. 15): the rows that form its target, and their weights in
+// the losses.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -71,8 +71,8 @@ void RepeatRows(size_t rows, std::span<const T> from, std::span<T> to) {
   for (size_t i = 0; i < to.size(); ++i) to[i] = from[i / size / kCopies * size + i % size];
 }
 
-// One shift of each kind: a batch of pairs of equal rows teaches what the rows do once. DDPG, which
-// draws no noise.
+// One shift of each kind: a batch of pairs of equal rows must give the same update as the single
+// rows. DDPG, because it draws no noise.
 TEST(Copies, RowsThatAreAllAlikeWeighAsOne) {
   Config config = SmallConfig();
   config.learner.algorithm = "ddpg";

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The common part of TD3 and DDPG. One update against a double in double: losses, and every
-// gradient by central differences.
+// The common part of TD3 and DDPG. Compares one update with a reference in double precision:
+// losses, and every gradient by central differences.
 //
-// The gradients are read off Adam's first moment, which was 0 before: m = (1 - 0.9) g. Targets are
-// far from what they follow, so that each is seen where it belongs.
+// The gradients are computed from Adam's first moment, which was 0 before: m = (1 - 0.9) g. Targets
+// differ much from the networks that they follow, so that an exchange of networks is detected.
 #include <gmock/gmock.h>
 
 #include <algorithm>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// SAC learns from pictures: records go into a replay as actors send them, batches come out of it
-// stacked and shifted, and the policy that was learned acts on pictures as an actor stacks them.
+// SAC learns from pictures: a replay stores records as actors send them and draws stacked and
+// shifted batches, and the learned policy acts on pictures stacked by an actor.
 //
-// Two cameras show a bar each, in episodes of two steps. What to do depends on how far the first
-// camera's bar has moved since the frame before: on the order of the frames of a stack, on the
-// order of the cameras, and on one shift for all of them. The second camera's bar moves likewise
-// and means nothing.
+// Two cameras show a bar each, in episodes of two steps. The best action depends on the motion of
+// the first camera's bar since the previous frame, and so on the order of the frames of a stack, on
+// the order of the cameras, and on an equal shift for all frames. The motion of the second camera's
+// bar has no meaning.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -18,8 +18,8 @@ namespace {
 
 using nn::ParameterSet;
 
-// The same policy of two sets in every replica, and one alone. The first set is smaller than what
-// there is to share out.
+// The same policy, of two sets, in every replica and in a single one. The first set is smaller than
+// the smallest unit that replicas share out.
 class PolicyAverageTest : public testing::TestWithParam<int> {
  protected:
   struct Averaged {

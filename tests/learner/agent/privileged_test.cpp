@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Learning with privileged inputs: asymmetric critics and the auxiliary loss, against a
-// double in double as in sac_gradient_test.cpp.
+// Learning with privileged inputs: compares asymmetric critics and the auxiliary loss with a
+// reference in double precision, as in sac_gradient_test.cpp.
 #include <gmock/gmock.h>
 
 #include <numbers>
@@ -170,7 +170,7 @@ TEST_F(PrivilegedTest, ASharedEncoderIsTaughtWithTheCritic) {
   Network network(before, config_.network, spec_);
   const double error = 0.15 * std::sqrt(AuxLoss(network, "critic", data.View()));
   EXPECT_NEAR(Get(stats, kAuxError), error, 1e-4 * error);
-  // Beside what the critic's loss does, which is what a run without labels does.
+  // In addition to the gradient of the critic's loss, which equals that of a run without labels.
   config_.sac.aux = {};
   const auto plain = Make();
   ASSERT_TRUE(plain->Update(RandomBatch(spec_, config_.learner.batch, 3).View()).finite);

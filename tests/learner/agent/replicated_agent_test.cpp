@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several replicas are the agent that one would be, within rounding, and the same bits each time.
+// Several replicas give the same agent as one replica, within rounding, and the same bits each
+// time.
 #include "learner/agent/replicated_agent.h"
 
 #include <gmock/gmock.h>

@@ -246,8 +246,8 @@ TEST(SacAgent, NonFiniteInputIsReportedAndChangesNothing) {
   EXPECT_EQ(agent->updates(), 4u);
 }
 
-// A learning rate at which the critic's step is finite and its next output is not: the actor's loss
-// shows it, and the critic's step has to be taken back.
+// A learning rate with which the critic's step is finite but its next output is not. The actor's
+// loss is then not finite, and the critic's step must be undone.
 TEST(SacAgent, NonFiniteActorLossTakesTheCriticsStepBack) {
   Config config = SmallConfig();
   config.learner.learning_rate = 1e37;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// One whole update against a double in double: losses, and every gradient by central differences.
+// Compares one whole update with a reference in double precision: losses, and every gradient by
+// central differences.
 //
-// The gradients are read off Adam's first moment, which was 0 before: m = (1 - 0.9) g. Targets and
-// temperature are not those of a fresh agent, so that each is seen where it belongs.
+// The gradients are computed from Adam's first moment, which was 0 before: m = (1 - 0.9) g. Targets
+// and temperature differ from those of a fresh agent, so that an exchange is detected.
 #include <numbers>
 
 #include "tests/common/nn/reference_network.h"

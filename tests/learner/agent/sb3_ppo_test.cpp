@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two epochs of PPO, held to what Stable-Baselines3 computes from the same weights and rollout:
-// tests/comparison/sb3_ppo.py recorded it and says what the files hold.
+// Compares two epochs of PPO with Stable-Baselines3 for equal weights and rollouts.
+// tests/comparison/sb3_ppo.py made the recordings and describes the files.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Updates that Stable-Baselines3 made, and an agent that starts from the same weights:
-// tests/comparison/sb3_updates.py recorded them and says what a file holds.
+// Updates of Stable-Baselines3, and an agent that starts from the same weights.
+// tests/comparison/sb3_updates.py recorded the updates and describes the files.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@
 
 namespace shoal::learner {
 
-// Their batch of an update.
+// The recorded batch of an update.
 inline void FillSb3Batch(int update, const BatchView& batch) {
   const std::string at = "update" + std::to_string(update) + ".";
   FillSymmetric(at + "obs", 1.5, batch.obs_vector);
@@ -45,8 +45,8 @@ class Sb3Recording {
       : recorded_(nn::ReadSafetensors(ReadFile(GoldenPath("sb3/" + name + ".safetensors")), name)) {
   }
 
-  // A layer of theirs, names without ".weight" and ".bias": ours of that name, or the part'th of
-  // so many equal parts of it. `scale`: of its weights.
+  // Maps a layer of Stable-Baselines3 to a layer of Shoal (names without ".weight" and ".bias"), or
+  // to part number `part` of `parts` equal parts of it. `scale`: factor of the weights.
   void Add(const std::string& ours, const std::string& theirs, int part = 0, int parts = 1,
            double scale = 1) {
     layers_.push_back({ours, theirs, part, parts, scale});
@@ -58,7 +58,7 @@ class Sb3Recording {
     Add(ours + ".output", theirs + ".4");
   }
 
-  // An agent's tensors with the weights that theirs start from.
+  // An agent's tensors with the initial weights of the recording.
   nn::TensorMap WithTheirWeights(nn::TensorMap tensors) const {
     for (const Layer& layer : layers_) {
       const std::vector<int64_t> shape = tensors.at(layer.ours + ".weight").shape;
@@ -88,7 +88,7 @@ class Sb3Recording {
     return std::accumulate(numbers.begin(), numbers.end(), 0.0) / double(numbers.size());
   }
 
-  // Every parameter and target when the update is over.
+  // Compares every parameter and target after the update.
   void ExpectParameters(int update, const nn::TensorMap& after) const {
     for (const Layer& layer : layers_) {
       for (const char* kind : kKinds) {
@@ -103,8 +103,8 @@ class Sb3Recording {
     }
   }
 
-  // The gradients, read off Adam's first moments before and after: m' = 0.9 m + 0.1 g. `factor`:
-  // of our loss on theirs, by layer. Returns how many tensors were compared.
+  // Compares the gradients, computed from Adam's first moments before and after: m' = 0.9 m + 0.1
+  // g. `factor`: Shoal's loss divided by the recorded one, by layer. Returns the number of tensors.
   template <class Factor>
   int ExpectGradients(int update, const nn::TensorMap& before, const nn::TensorMap& after,
                       Factor factor) const {
@@ -133,7 +133,7 @@ class Sb3Recording {
     const size_t size = numbers.size() / size_t(layer.parts);
     return std::span(numbers).subspan(size_t(layer.part) * size, size);
   }
-  // The thinned numbers of a recording.
+  // The subset of numbers that a recording keeps.
   static std::vector<float> Thin(std::span<const float> numbers) {
     const size_t step = numbers.size() > 1024 ? (numbers.size() + 255) / 256 : 1;
     std::vector<float> kept;

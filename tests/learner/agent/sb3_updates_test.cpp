@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Four updates of TD3 and DDPG, held to what Stable-Baselines3 computes from the same weights and
-// batches. Without noise on the target's action: both sides' random numbers are their own.
+// Compares four updates of TD3 and DDPG with Stable-Baselines3 for equal weights and batches. The
+// target's action has no noise, because the two programs draw different random numbers.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 

@@ -23,8 +23,8 @@ ObservationSpec State() {
   return spec;
 }
 
-// From state the networks are counted by hand: actor 3 x 8 + 8 x 4 (mean and deviation), each Q
-// 5 x 8 + 8 x 1.
+// Networks from state, counted by hand: actor 3 x 8 + 8 x 4 (mean and deviation), each Q 5 x 8 + 8
+// x 1.
 TEST(UpdateCost, CountsTheProductsOfAllPasses) {
   const double actor = 3 * 8 + 8 * 4, critics = 2 * (5 * 8 + 8);
   const UpdateCost cost = CostOfUpdate(SmallNetworks("sac"), State());
@@ -81,8 +81,8 @@ TEST(UpdateCost, PicturesCostTheEncodersMaps) {
   EXPECT_EQ(static_cast<double>(cost.encoder_parameters),
             kNatureWeights[0] + kNatureWeights[1] + kNatureWeights[2] + 32 + 64 + 64);
   const double actor = kTrunk + (6 + 3) * 8 + 8 * 4, critics = kTrunk + 2 * ((6 + 5) * 8 + 8);
-  // A step of the actor computes no gradient of the features: neither by its trunk, as the critic
-  // trains the encoder, nor by the critics' trunk, below which there is no action.
+  // A step of the actor computes no gradient of the features. Its own trunk needs none, because the
+  // critic trains the encoder, and the critics' trunk has no action among its inputs.
   const double actor_step = 3 * actor - kTrunk + 2 * critics - kTrunk;
   EXPECT_DOUBLE_EQ(cost.flop,
                    2 * 10 * (2 * kForward + kBackward + 4 * critics + actor + actor_step / 2));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The operations of the CPU's engine against plain references in double on random numbers; every
-// result is poisoned before. Replicas are held to one engine that has the whole batch.
+// Compares the operations of the CPU's engine with simple references in double precision on random
+// numbers; result arrays are filled with invalid values before. Compares replicas with one engine
+// that has the whole batch.
 #include "learner/engine/cpu_engine.h"
 
 #include <gmock/gmock.h>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An update could be recorded once and repeated: which operations it consists of, on which arrays
-// and in which order, and which convolutions its networks run, is the same whatever the numbers
-// are.
+// The operations of an update, their arrays and order, and the convolutions of its networks do not
+// depend on the numbers, so an update could be recorded once and repeated.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -92,7 +91,7 @@ TEST_P(RecordedUpdateTest, ItsOperationsDoNotDependOnNumbers) {
     EXPECT_EQ(recording.convolutions, expected.convolutions) << what;
   };
   for (int update = 0; update < 4; ++update) {
-    // An update that is not finite leaves nothing behind, so the next one is the same update.
+    // An update that is not finite changes no state, so the next update is the same.
     const nn::TensorMap before = agent_->AllTensors();
     const Recording finite = Record();
     ASSERT_TRUE(finite.finite);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An engine that keeps the sequence of its operations, with their arrays and every number that the
-// host gives to them, and has another one compute them.
+// An engine that records its operations, with their arrays and every number that the host passes,
+// and forwards them to another engine.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ class RecordingEngine final : public Engine {
   // Borrows the engine.
   explicit RecordingEngine(Engine* engine) : engine_(engine) {}
 
-  // One line each, since the last call.
+  // The operations since the last call, one line each.
   std::vector<std::string> TakeOperations() { return std::exchange(operations_, {}); }
 
   const nn::ModuleContext& modules() const override { return engine_->modules(); }

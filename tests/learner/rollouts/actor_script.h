@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records of an actor on policy, by hand.
+// Records of an actor on policy, written by a test.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace shoal::learner {
 
 inline constexpr WeightsVersion kFirst{100, 0};
 
-// Records of one actor, made by hand: its environments in turn.
+// Records of one actor, whose environments take turns.
 class ActorScript {
  public:
   ActorScript(const ObservationSpec& spec, uint32_t actor, uint64_t session)
@@ -23,7 +23,7 @@ class ActorScript {
     uint8_t* record = Add(env, episode, 0, RecordKind::kReset);
     for (float& x : layout_.Vector(record)) x = observation;
   }
-  // A step that leads to `observation`; reward = observation.
+  // A step to `observation`; the reward equals the observation.
   void Step(uint32_t env, uint32_t episode, uint32_t index, float observation,
             const WeightsVersion& version = kFirst, uint8_t flags = 0) {
     uint8_t* record = Add(env, episode, index, RecordKind::kStep);
@@ -41,7 +41,7 @@ class ActorScript {
     Reset(env, episode, 1);
     for (uint32_t i = 1; i <= 3; ++i) Step(env, episode, i, float(i + 1), version);
   }
-  // Everything since the last one.
+  // The records since the last chunk.
   TransitionChunk Chunk() {
     sent_ = std::move(records_);
     records_.clear();
@@ -84,7 +84,7 @@ inline ObservationSpec PpoSpec() {
   return spec;
 }
 
-// Rollouts of three steps of `actors` actors with one environment each.
+// Configuration with rollouts of three steps and `actors` actors of one environment each.
 inline RunConfig PpoRun(int actors) {
   RunConfig run = SmallRun();
   run.config.learner.algorithm = "ppo";

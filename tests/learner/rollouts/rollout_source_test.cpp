@@ -26,7 +26,7 @@ class RolloutSourceTest : public testing::Test {
                     [this](const CreditsMessage& message) { Keep(message); });
     return *source_;
   }
-  // Runs on the serving thread: what the account says when a word goes out.
+  // Runs on the serving thread: stores the account at the time of each message.
   void Keep(const CreditsMessage& message) {
     const RunAccount account = ReadAccountBefore(folder_.path() / "run");
     const MutexLock lock(mutex_);
@@ -161,7 +161,7 @@ TEST_F(RolloutSourceTest, LessThanHalfAreWaitedForBeyondTheDeadline) {
   source_->OnChunk(a_.Chunk());
   ASSERT_TRUE(WaitUntilTold(0, 4, seconds(20)));
   EXPECT_FALSE(source_->Next(Now() + milliseconds(400)));
-  source_->SetActors(2);  // half of them are there: they are waited for until the deadline
+  source_->SetActors(2);  // waits for the missing half until the deadline
   EXPECT_TRUE(source_->Next(Now() + seconds(6))) << "sooner than after three times the deadline";
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Goal halves of tasks whose physics halves go wrong: a point of a plane, pushed to a goal.
+// Goal halves of tasks with faulty physics halves: a point of a plane, pushed to a goal.
 #include <string>
 
 #include "common/tasks/task_registry.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Physics halves that go wrong.
+// Faulty physics halves.
 #include <mujoco/mujoco.h>
 
 #include <algorithm>

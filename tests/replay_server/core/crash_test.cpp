@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The server is killed at random instants: what it acknowledged is there, and everything else goes
-// on as if it had never been interrupted.
+// The server is killed at random times. Acknowledged records must be present, and all later
+// behaviour must equal that of an uninterrupted server.
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 #include <sys/wait.h>

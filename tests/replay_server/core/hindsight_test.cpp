@@ -38,8 +38,8 @@ RunConfig PushRun() {
   return run;
 }
 
-// The records of an actor of two environments that step in turn in episodes of full length; what is
-// achieved moves along a line, so that some goals of hindsight are near and some far.
+// The records of an actor with two environments that step in turn, in episodes of full length. The
+// achieved goal moves along a line, so that some hindsight goals are near and some are far.
 std::vector<uint8_t> PushRecord(const RunConfig& run, uint64_t sequence) {
   const uint64_t round = (sequence - 1) / 2;  // each environment makes a record
   const auto env = static_cast<uint32_t>((sequence - 1) % 2);

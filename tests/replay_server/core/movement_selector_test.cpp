@@ -79,8 +79,8 @@ class MovementSelectorTest : public testing::Test {
     return movements;
   }
 
-  // Each sampleable step comes as often as (1 - share) / n + share movement / all movements says,
-  // within 5 sigma of a binomial, and the selector says that probability.
+  // Each sampleable step is drawn with probability (1 - share) / n + share movement / all
+  // movements, within 5 sigma of a binomial, and the selector reports this probability.
   void CheckDraws(double share, Stored* stored) {
     constexpr int kDraws = 200'000;
     const std::map<uint64_t, double> movements = Movements(*stored);

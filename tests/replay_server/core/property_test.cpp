@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random histories of several actors against an oracle that keeps everything.
+// Compares random histories of several actors with an oracle that keeps every record.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@
 namespace shoal::replay {
 namespace {
 
-// Knows what it has been told of, and tells another.
+// Records the ids added and removed, and forwards them to another selector.
 class KeptSelector final : public Selector {
  public:
   void Added(uint64_t id) override {
@@ -104,7 +104,7 @@ class History {
     for (const Actor& actor : actors_) CheckCounters(actor);
   }
 
-  // Every element of a batch is what the oracle says its step looks like.
+  // Every element of a batch must equal the oracle's step.
   void CheckBatch() {
     if (server_->index.sampleable() == 0) return;
     constexpr int kBatch = 16;
@@ -154,7 +154,7 @@ class History {
     server_->index.SetSelector(&kept_);
   }
 
-  // Another server goes on with the file.
+  // Another server continues with the file.
   void RestartServer() {
     server_.reset();
     StartServer();
@@ -178,7 +178,8 @@ class History {
     }
   }
 
-  // A server takes over, and the actor keeps `count` records no more that it does not know.
+  // A new server takes over, and the actor no longer has `count` of the records that the server
+  // lacks.
   void LoseSome(Actor* actor, uint32_t count) {
     const uint64_t first = actor->next + count;
     RestartServer();

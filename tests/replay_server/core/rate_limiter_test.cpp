@@ -162,8 +162,8 @@ TEST(RateLimiter, AScheduleHasTheBandOfItsLargestValueWhereverThatIs) {
   EXPECT_EQ(RateLimiter::LeastBand(rising, 3), RateLimiter::LeastBand(falling, 3));
 }
 
-// Steps come in pieces, batches are drawn whenever they may be: what was drawn is what a sum over
-// each single step says, within the band.
+// Steps arrive in groups, and batches are drawn whenever this is allowed. The number of samples
+// must equal a sum over the single steps, within the band.
 TEST(RateLimiterProperty, SamplesPerInsertFollowAScheduleWithinTheBand) {
   for (uint64_t seed = 1; seed <= 30; ++seed) {
     Random random(seed);
@@ -195,8 +195,9 @@ TEST(RateLimiterProperty, SamplesPerInsertFollowAScheduleWithinTheBand) {
   }
 }
 
-// Actors with windows and a learner that wants more always, around one limiter. Not every record
-// becomes sampleable, the ring overwrites, processes die and come back, the ratio changes.
+// One limiter with actors that have windows and a learner that always requests more. Not every
+// record becomes sampleable, the ring overwrites records, processes die and restart, the ratio
+// changes.
 class World {
  public:
   World(const LimiterOptions& options, uint64_t seed)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The specs and ways of sampling that the property tests try.
+// The observation specs and sampling methods of the property tests.
 #pragma once
 
 #include <optional>
@@ -15,17 +15,17 @@ namespace shoal::replay {
 inline constexpr double kDiscount = 0.9;
 inline constexpr double kThreshold = 1;
 
-// A spec, and a way of sampling.
+// An observation spec and a sampling method.
 struct ReplayCase {
   int stack, n_step;
   std::optional<HindsightGoal> hindsight{};
   bool goal_pictures = false;
   bool end_on_success = false;
-  std::optional<double> movement_share{};  // of the samples, drawn by what still moves
+  std::optional<double> movement_share{};  // share of samples drawn by remaining motion
   MovementKind movement = MovementKind::kPath;
 };
 
-// Goals are points of the plane; the script's are spread over [-2, 2].
+// Goals are points of the plane. Those of RecordScript are spread over [-2, 2].
 inline tasks::Task TinyTask() {
   tasks::Task::Description description;
   description.name = description.world = "Tiny";

@@ -39,8 +39,7 @@ class RingTest : public testing::Test {
     return ring.last_id();
   }
 
-  // The message with which everything that reads the file at start refuses it; "" when nothing
-  // does.
+  // The error message of all functions that read the file at start; "" if none refuses the file.
   std::string Refusal(const ObservationSpec& spec, const RingOptions& options) {
     return ErrorMessage([&] {
       Ring ring(spec, options);

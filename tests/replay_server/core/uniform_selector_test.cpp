@@ -43,8 +43,8 @@ class UniformSelectorTest : public testing::Test {
     }
   }
 
-  // The deviation of the selector's draws from uniform ones: too few or too many of one id by 5
-  // sigma of a binomial, or of the older half of the ids; "" when nothing is.
+  // Describes a deviation of the selector's draws from uniform ones: the count of one id, or of the
+  // older half of the ids, differs by 5 sigma of a binomial. "" if there is no deviation.
   std::string Fault(Selector* selector) {
     constexpr int kDraws = 400'000;
     std::map<uint64_t, int> counts;

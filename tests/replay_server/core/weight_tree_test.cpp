@@ -15,7 +15,7 @@ size_t Sought(const std::vector<uint64_t>& weights, uint64_t at) {
   return i;
 }
 
-// Sizes beside powers of two; weights that come, change and go, many of them 0.
+// Sizes near powers of two; weights that are added, changed and removed, many of them 0.
 TEST(WeightTree, FindsWhatAWalkOverAllWeightsFinds) {
   Random random(1);
   for (const size_t size : {1, 2, 3, 8, 13, 64, 65}) {

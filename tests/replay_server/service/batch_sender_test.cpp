@@ -13,7 +13,7 @@ namespace {
 
 using std::chrono::seconds;
 
-// Keeps what is written; refuses as often as told.
+// Stores written messages; refuses a given number of writes.
 class FakeWriter : public PartWriter {
  public:
   bool Write(const BatchPart& part) override {

@@ -79,11 +79,11 @@ TEST_F(FlowAgesTest, RandomActionsHaveNoLag) {
 TEST_F(FlowAgesTest, ALearnerThatRestartsCountsFromItsCheckpoint) {
   Ask(1, 104);
   Ask(2, 64);
-  Store(1, 90, 0);  // of weights that are ahead of the new learner
+  Store(1, 90, 0);  // from weights newer than the new learner's
   EXPECT_EQ(Report().at("policy_lag_p50"), 0);
   Store(1, 40, 0);
   EXPECT_EQ(Report().at("policy_lag_p50"), 20);
-  Ask(1, 200);  // a late word of the old one
+  Ask(1, 200);  // a late message of the old learner
   Store(2, 60, 0);
   EXPECT_EQ(Report().at("policy_lag_p50"), 0);
 }

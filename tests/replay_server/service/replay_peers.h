@@ -62,12 +62,12 @@ class ReplayPeers {
     }
   }
 
-  // The replay's readers are there: what is written from now on arrives.
+  // Waits until the replay's readers are matched: later messages arrive.
   bool WaitForReplay() {
     return WaitFor([this] { return chunks_.Matched() > 0 && requests_.Matched() > 0; });
   }
 
-  // Sends the script's records up to `last` as a good actor does, until they are reported stored.
+  // Sends the script's records up to `last` like a correct actor, until all are acknowledged.
   bool Deliver(RecordScript* script, uint64_t last) {
     const SteadyTime end = Now() + std::chrono::seconds(30);
     SteadyTime progress{};
@@ -75,7 +75,7 @@ class ReplayPeers {
     while (Now() < end) {
       const uint64_t stored = Stored(*script);
       if (stored >= last) return true;
-      // Nothing new for a while, or a new replay session: once more from the oldest.
+      // Without progress, or after a new replay session, resends from the oldest record.
       if (stored > known) progress = Now();
       if (stored > sent || Now() - progress > std::chrono::milliseconds(300)) {
         sent = stored;
@@ -98,7 +98,9 @@ class ReplayPeers {
   }
   bool Write(const TransitionChunk& chunk) { return chunks_.Write(chunk); }
 
-  // Asks for a batch and puts it together; empty when it does not come. Asks again like a learner.
+  // Requests a batch and assembles its parts, repeating the request like a learner. Empty if the
+  // batch
+  // does not arrive.
   std::vector<uint8_t> Batch(uint64_t request) {
     {
       const std::lock_guard lock(mutex_);

@@ -50,8 +50,8 @@ class ReplayProcess {
     waitpid(pid_, nullptr, 0);
     pid_ = -1;
   }
-  // The exit code as a shell has it, 128 + the number of the signal it died by; nothing when it
-  // does not end within the deadline.
+  // The exit code as in a shell, 128 + number of the signal that killed the process; empty if the
+  // process does not end before the deadline.
   std::optional<int> ExitCode(std::chrono::seconds deadline) {
     const SteadyTime end = Now() + deadline;
     int status = 0;

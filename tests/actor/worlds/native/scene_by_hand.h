@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Abstract scenes of the engine without a model behind them.
+// Abstract scenes of the engine, built without a model.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -43,7 +43,8 @@ class SceneByHand {
   SceneByHand(const SceneByHand&) = delete;
   SceneByHand& operator=(const SceneByHand&) = delete;
 
-  // A white geom without shine, its axes those of the world. Valid until the next one is added.
+  // Adds a white geom without specular reflection, aligned with the world's axes. The reference is
+  // valid until the next Add.
   mjvGeom& Add(int type, std::array<float, 3> position, std::array<float, 3> size) {
     mjvGeom& geom = geoms_.emplace_back();
     std::memset(static_cast<void*>(&geom), 0, sizeof(geom));

@@ -38,7 +38,7 @@ TEST_F(StaticLayersTest, ALayerIsFoundByItsKey) {
   EXPECT_EQ(copy.tiles().colour[5], 77);
 }
 
-// 8 MiB hold 8 layers of 64 x 64 tiles; the oldest gives way.
+// 8 MiB are enough for 8 layers of 64 x 64 tiles; the oldest layer is dropped.
 TEST_F(StaticLayersTest, MemoryIsLimited) {
   for (uint32_t i = 0; i < 30; ++i) layers_.Store({i}, picture_, view_);
   EXPECT_EQ(layers_.Find({0}), nullptr);

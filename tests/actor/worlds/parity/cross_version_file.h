@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Grip positions of the original Fetch models in newer versions of MuJoCo: format vrl-xversion-1.
 //
-// The file holds no actions and no starts. Those of the sequences const_* and zero follow from
-// their names; the others', and where the object lies and the goal is, come from the trajectories
-// of the same task (format vrl-ref-1, "fetch_Push_random0.json") in the same folder.
+// The file contains no actions and no initial states. The actions of the sequences const_* and zero
+// follow from their names. The actions of the others, and the positions of object and goal, are
+// read from the trajectories of the same task (format vrl-ref-1, "fetch_Push_random0.json") in the
+// same folder.
 #pragma once
 
 #include <array>
@@ -30,12 +31,12 @@ struct CrossVersionSequence {
 
 struct CrossVersionFile {
   std::vector<CrossVersionSequence> sequences;
-  std::vector<std::string> left_out;  // "FetchPush random1": no trajectory tells their actions
+  std::vector<std::string> left_out;  // "FetchPush random1": no trajectory has its actions
 };
 
-// The sequences of one version of MuJoCo. Throws Error naming the file and the key: not JSON,
-// another format, no such version, a key missing or ill-typed, a task without any trajectory beside
-// the file.
+// Reads the sequences of one version of MuJoCo. Throws Error naming the file and the key if the
+// file is not JSON or has another format, if the version or a key is missing, if a key has a wrong
+// type, or if a task has no trajectory in the folder of the file.
 CrossVersionFile ReadCrossVersions(const std::filesystem::path& path, const std::string& version);
 
 }  // namespace shoal::worlds

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// shoal-parity FILE...: replays recorded trajectories of the original environments in our physics
-// and reports how far apart the two get. Exit code 1 if that is more than the tolerance.
+// shoal-parity FILE...: replays recorded trajectories of the original environments in Shoal's
+// physics and reports the largest differences. Exit code 1 if a difference exceeds the tolerance.
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <nlohmann/json.hpp>

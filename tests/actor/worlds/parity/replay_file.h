@@ -9,22 +9,24 @@
 
 namespace shoal::worlds {
 
-// A trajectory (vrl-ref-1) gives one report, see ReplayReference and, for environments without
-// goals, ReplayStates; a file of grip positions in newer
-// versions of MuJoCo (vrl-xversion-1) one for each of MuJoCo 3.3.8's sequences whose actions are
-// known (the others are logged), see CrossVersionTolerance. These are replayed with physics
-// mujoco3 unless the options say otherwise, and in our own models only.
+// A trajectory (vrl-ref-1) gives one report: see ReplayReference and, for environments without
+// goals, ReplayStates.
 //
-// A file of pictures (vrl-frames-1), which lies beside them, is logged and gives no report.
+// A file of grip positions in newer versions of MuJoCo (vrl-xversion-1) gives one report for each
+// sequence of MuJoCo 3.3.8 whose actions are known; the others are logged. See
+// CrossVersionTolerance. These sequences are replayed in Shoal's own models only, with physics
+// mujoco3 unless the options name another.
 //
-// Throws Error on a file that cannot be read or replayed and on physics or a model that do not
+// A file of pictures (vrl-frames-1) from the same folder is logged and gives no report.
+//
+// Throws Error if the file cannot be read or replayed, or if the physics or the model does not
 // exist.
 std::vector<ReplayReport> ReplayFile(const std::filesystem::path& path,
                                      const ReplayOptions& options = {});
 
-// How far the grip may be from MuJoCo 3.3.8's, m: 1e-3; 1.5e-2 for const_y, where the arm folds
-// onto itself; 3e-3 for zero in the tasks that start above the table, where the gripper sinks
-// slowly under its own weight and the two versions do so at another rate.
+// Largest distance of the grip from that of MuJoCo 3.3.8, m: 1e-3. It is 1.5e-2 for const_y, where
+// the arm folds onto itself, and 3e-3 for zero in the tasks that start above the table: there the
+// gripper sinks under its own weight at a different rate in the two versions.
 double CrossVersionTolerance(const std::string& task, const std::string& sequence);
 
 }  // namespace shoal::worlds

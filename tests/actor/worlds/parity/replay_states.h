@@ -11,9 +11,9 @@
 
 namespace shoal::worlds {
 
-// Hopper: tolerance 1e-9 of every number; 1e-4 in `zero`, whose symmetric landing amplifies the
-// last digits (velocities and what is made of them are then only reported). Recorded observations
-// have their velocities clipped in every variant, so ours are compared after clipping.
+// Hopper: the tolerance of every number is 1e-9. It is 1e-4 in `zero`, whose symmetric landing
+// amplifies the last digits; velocities and numbers derived from them are then only reported. The
+// recorded velocities are clipped in every variant, so Shoal's are compared after clipping.
 //
 // Control Suite: see kControlTolerance in the source. Throws Error on a file that cannot be read or
 // replayed; see ReadStateReference.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recorded trajectory of an environment without goals, Hopper or one of the Control Suite, to
-// compare our physics with: what the format vrl-ref-1 holds of it.
+// A recorded trajectory (format vrl-ref-1) of an environment without goals: Hopper or one of the
+// Control Suite. Shoal's physics is compared with it.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ struct StateSnapshot {
 struct StateStep {
   std::vector<double> action;  // each in [-1, 1]
   StateSnapshot after;
-  double reward = 0;  // of the environment; of Hopper-v5
+  double reward = 0;  // of the environment; for Hopper that of Hopper-v5
   std::optional<double> reward_hopper_v4;
   std::optional<bool> healthy;  // Hopper
 };

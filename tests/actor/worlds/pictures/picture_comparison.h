@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of quality native beside those of the engine's own renderer.
+// Compares pictures of quality native with those of the engine's own renderer.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace shoal::worlds {
 
 constexpr int kPictureSide = 84;
 
-// A world under random actions, started anew when an episode ends.
+// A world under random actions, reset at the end of each episode.
 class RandomStates {
  public:
   RandomStates(const std::string& task, uint64_t seed);
@@ -38,8 +38,8 @@ class RandomStates {
 // Agreement about one geom or site, over all states.
 struct PartAgreement {
   std::string name;
-  int states = 0;                          // in which the engine shows at least kShownPixels of it
-  int missed = 0;                          // of these: states in which we show none of it
+  int states = 0;  // states in which the engine shows at least kShownPixels
+  int missed = 0;  // of these: states in which quality native shows no pixel
   int64_t engine = 0, ours = 0, both = 0;  // pixels
 
   double overlap() const;  // intersection over union
@@ -54,7 +54,7 @@ struct CameraComparison {
   // Intersection over union of the segments of a picture: all of them, and those of bodies that
   // move, over all states.
   double mean_overlap = 0, least_overlap = 1, moving_overlap = 1;
-  std::vector<PartAgreement> parts;  // all that either side shows, by name
+  std::vector<PartAgreement> parts;  // parts that either side shows, by name
 };
 
 // Draws `states` random states with each of the task's cameras.
@@ -65,7 +65,7 @@ std::vector<std::string> TasksOfAllWorlds();
 
 bool IsFingerOrMarker(const PartAgreement& part);
 
-// Fingers, goal markers and the part that agrees least, of those with a mean of kShownPixels.
+// Among parts with a mean of kShownPixels: fingers, goal markers and the part that agrees least.
 std::vector<PartAgreement> TellingParts(const CameraComparison& comparison);
 
 // Schema shoal-pictures-1: {schema, side, cameras: [...]}.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The engine's own OpenGL renderer as quality `reference` sets it up, but without shadows,
-// reflections and multisampling: what quality `native` is to look like.
+// The engine's own OpenGL renderer, set up as for quality `reference` but without shadows,
+// reflections and multisampling: the model for quality `native`.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ class UnshadowedReference {
 
   // (3, H, W), row 0 = top.
   std::vector<uint8_t> Draw(mjvScene_* scene);
-  // (H, W): mjvGeom::segid of what is in front; -1 = nothing.
+  // (H, W): mjvGeom::segid of the front geom; -1 = none.
   std::vector<int> DrawSegments(mjvScene_* scene);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Content of an HDF5 file, read by the library itself.
+// Contents of an HDF5 file, read with the HDF5 library.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ class Hdf5Reader {
   bool Has(const std::string& name) const {
     return H5Oexists_by_name(file_, name.c_str(), H5P_DEFAULT) > 0;
   }
-  // Names of what the file's root has, in alphabetical order.
+  // Names of the members of the file's root, in alphabetical order.
   std::vector<std::string> Names() const {
     std::vector<std::string> names;
     const auto take = [](hid_t, const char* name, const H5L_info_t*, void* kept) -> herr_t {

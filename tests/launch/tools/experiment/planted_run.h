@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The folder of a run as its programs would have left it, without them.
+// Writes the folder of a finished run without running its programs.
 #pragma once
 
 #include <fmt/core.h>
@@ -15,7 +15,8 @@
 
 namespace shoal::launch {
 
-// One evaluation of schema shoal-eval-1 with these means; without success, of a task that has none.
+// One evaluation of schema shoal-eval-1 with these means. Without `success`, the task has no
+// success.
 inline nlohmann::ordered_json PlantedEvaluation(uint64_t env_steps, std::optional<double> success,
                                                 int episodes, double return_mean = -1) {
   return {{"schema", "shoal-eval-1"},
@@ -33,7 +34,7 @@ inline nlohmann::ordered_json PlantedEvaluation(uint64_t env_steps, std::optiona
             {"final_distance_mean", 0.02}}}};
 }
 
-// Files of a run in `path`, which need not be there.
+// Writes files of a run into `path`, which is created if missing.
 class RunPlanter {
  public:
   explicit RunPlanter(std::filesystem::path path) : path_(std::move(path)) {}
@@ -70,7 +71,7 @@ class RunPlanter {
   std::filesystem::path path_;
 };
 
-// In a folder of its own.
+// A run in a temporary folder.
 class PlantedRun {
  public:
   std::filesystem::path path() const { return planter_.path(); }

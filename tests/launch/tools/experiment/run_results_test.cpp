@@ -30,8 +30,8 @@ TEST(StepsToSuccess, LooksAtAsManyEvaluationsAsTheRunsOwnRule) {
   EXPECT_EQ(StepsToSuccess(RunWith({0.5, 1, 0.8, 0.9}, 3), 0.9), 200u);
 }
 
-// The audit's case: push-her's seed 0 had 97 and 99 % and then 98 %. What the stop rule writes into
-// meta.json as first_success and what experiments count as n_to_target are the same evaluation.
+// push-her's seed 0 had 97, 99 and then 98 %. first_success in meta.json (stop rule) and
+// n_to_target of experiments must mean the same evaluation.
 TEST(StepsToSuccess, AgreesWithTheStopRule) {
   const std::vector<std::vector<double>> curves{
       {0.93, 0.97, 0.99, 0.98}, {0.98, 0.98}, {0.9, 1, 0.96, 0.94}, {1}, {0.2, 0.3}};

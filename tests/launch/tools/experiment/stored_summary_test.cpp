@@ -91,7 +91,8 @@ TEST_F(StoredSummaryTest, IsItsOwnFixedPoint) {
   EXPECT_EQ(Read(once), once);
 }
 
-// Made with `shoal experiment summary FILE --json`; who changes the statistics makes them anew.
+// Made with `shoal experiment summary FILE --json`. Generate them again after a change of the
+// statistics.
 TEST(CommittedSummaries, HaveTheAggregatesOfTheirRows) {
   int files = 0;
   for (const auto& entry :

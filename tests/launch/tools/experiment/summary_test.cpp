@@ -110,7 +110,7 @@ TEST_F(SummaryTest, TheTextNamesWhatIsMissing) {
   EXPECT_THAT(StatusText(ReadOutcome(folder_->experiment())), HasSubstr("pixels-s1"));
 }
 
-// A run whose numbers were not finite leaves no figures; the row of its arm says so.
+// A run with numbers that are not finite has no figures; the row of its arm reports this.
 TEST_F(SummaryTest, AFailedSeedIsCountedInTheRowOfItsArm) {
   const RunPlanter failed(folder_->experiment().folder / "runs/state-s1");
   failed.WriteMeta("failed", "critic_loss is nan");

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes a checkpoint of every algorithm and encoder, trained for three updates on random numbers,
-// for scripts that hold other programs to what `shoal export` makes of them
-// (tests/comparison/onnx_actions.py, sb3_policy.py).
+// Writes a checkpoint of every algorithm and encoder, trained for three updates on random numbers.
+// tests/comparison/onnx_actions.py and sb3_policy.py compare the results of `shoal export` in other
+// programs.
 //
 // usage: random-checkpoints FOLDER [TEXT]
-//   FOLDER/ALGORITHM-ENCODER/checkpoints/step_N; ENCODER "state" without pixels, "sb3" of networks
-//   that Stable-Baselines3 has: nature alone of pixels, "sb3-state" of vectors. Of SAC also
-//   "asymmetric" (a critic of blocks), "taught" (sac.aux) and "separate" (an encoder of the
-//   actor's own). With TEXT those alone whose ALGORITHM-ENCODER has it.
+//   FOLDER/ALGORITHM-ENCODER/checkpoints/step_N. ENCODER is "state" without pixels, "sb3" or
+//   "sb3-state" for networks that Stable-Baselines3 has (encoder nature alone, or vectors). SAC
+//   also has "asymmetric" (a critic of blocks), "taught" (sac.aux) and "separate" (an encoder of
+//   the actor's own). TEXT selects the checkpoints whose ALGORITHM-ENCODER contains it.
 #include <fmt/core.h>
 
 #include <filesystem>

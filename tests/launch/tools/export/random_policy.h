@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Policies of every kind with parameters that belong to no training.
+// Policies of every kind with random parameters.
 #pragma once
 
 #include <cmath>
@@ -14,17 +14,17 @@
 namespace shoal::launch {
 
 struct PolicyKind {
-  std::string encoder;  // empty: from vectors alone
+  std::string encoder;  // empty: vectors only
   nn::ActorOutput output = nn::ActorOutput::kGaussian;
   bool normalised = false;
 };
 
-// For what googletest says of a test's parameter.
+// Used by googletest to print the parameter of a test.
 inline void PrintTo(const PolicyKind& kind, std::ostream* out) {
   *out << '"' << kind.encoder << '"';
 }
 
-// Small, and odd where the encoder takes it: the windows of alexnet's average pool differ then.
+// Small, and odd if the encoder accepts odd sizes: then alexnet's average pool has unequal windows.
 inline ObservationSpec SpecFor(const std::string& encoder) {
   ObservationSpec spec;
   spec.task = "test";
@@ -48,7 +48,7 @@ inline nn::NamedTensor FloatTensor(const std::vector<float>& values) {
 inline policy::CheckpointPolicy RandomPolicy(const PolicyKind& kind, NetworkConfig network = {}) {
   constexpr const char* kAlgorithms[] = {"sac", "td3", "ppo"};
   if (!kind.encoder.empty()) network.encoder = kind.encoder;
-  network.initialisation = "pytorch";  // orthogonal weights of the large encoders take long
+  network.initialisation = "pytorch";  // faster than orthogonal weights for large encoders
   network.hidden = {17, 12};
   policy::CheckpointPolicy policy;
   policy.description = {.version = "0.1.0",
@@ -60,7 +60,9 @@ inline policy::CheckpointPolicy RandomPolicy(const PolicyKind& kind, NetworkConf
   nn::Append(policy.description.Actor().Parameters(), &specs);
   nn::ParameterSet set(specs, nn::ParameterSet::Use::kInference);
   set.Initialise(7);
-  // Off the special values of biases, norms and statistics; variances stay positive.
+  // Random changes, because initial biases, norms and statistics have special values. Variances
+  // stay
+  // positive.
   Random random(8);
   for (int64_t i = 0; i < set.size(); ++i) set.values()[i] += float(0.02 * random.Normal());
   set.Export(&policy.tensors);

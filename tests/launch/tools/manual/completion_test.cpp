@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The completions that the build made, run by the shells they are for, against --help of the built
+// Runs the built completions in their shells and compares the results with --help of the built
 // programs.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -66,7 +66,8 @@ Harness Bash() {
           }};
 }
 
-// compadd and compset only work where a line is being edited: here they say what they are given.
+// compadd and compset work only in the line editor, so they are replaced: they print their
+// arguments.
 Harness Zsh() {
   return {
       .shell = "zsh",

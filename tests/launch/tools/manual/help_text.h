@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The --help of the built programs, parsed from their output: the reference for man pages and
-// completions, independent of the code that makes them.
+// The --help output of the built programs, parsed: a reference for man pages and completions that
+// does not depend on their generator.
 #pragma once
 
 #include <set>
@@ -22,7 +22,7 @@ struct HelpText {
 // The help of a program and each of its commands, as `PROGRAM ... --help` prints it.
 const std::vector<HelpText>& AllHelp();
 
-// build/share/FILE as the build made it.
+// Path of the built file build/share/FILE.
 std::string SharePath(const std::string& file);
 
 }  // namespace shoal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pages that the build made, against --help of the built programs.
+// Compares the built manual pages with --help of the built programs.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An installation in a folder of its own, for the tests of a suite.
+// An installation in a temporary folder, shared by the tests of a suite.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ class InstalledShoal : public testing::Test {
   static std::filesystem::path Prefix() { return Folder() / "prefix"; }
   static std::string Shoal() { return (Prefix() / "bin/shoal").string(); }
 
-  // `line` of a shell, in `folder`.
+  // Runs the shell command `line` in `folder`.
   static ProgramResult RunIn(const std::filesystem::path& folder, const std::string& line) {
     return RunCommand({"/bin/sh", "-c", "cd " + folder.string() + " && " + line},
                       std::chrono::seconds(400));

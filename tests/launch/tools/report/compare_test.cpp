@@ -155,7 +155,7 @@ TEST_F(CompareTest, AFailedSeedIsCountedInTheRowOfItsArm) {
                               "as 0)"));
   EXPECT_THAT(text, HasSubstr("failed: y-s1\n"));
   EXPECT_EQ(ToJson(comparison).at("groups").at(1).at("success").at("failed"), 1);
-  // By itself there is nothing else to show of it.
+  // A failed run alone has no other figures to show.
   const Comparison alone =
       Compare(Read({(folder_.path() / "experiments/mine/runs/y-s1").string()}), 0.9);
   EXPECT_THAT(ToText(alone), HasSubstr("1, failed  10.0 % "));

@@ -67,7 +67,7 @@ TEST(Access, ActingFromAnotherPageIsForeignEvenWithTheToken) {
   EXPECT_EQ(kLoopback.Decide(caller), Access::kForeign);
   caller.fetch_site = "same-site";  // another port of this host
   EXPECT_EQ(kLoopback.Decide(caller), Access::kForeign);
-  // A program that is no browser says neither.
+  // A program other than a browser sends neither header.
   caller.fetch_site = caller.origin = "";
   EXPECT_EQ(kLoopback.Decide(caller), Access::kAllowed);
 }

@@ -136,7 +136,7 @@ TEST(ThinnedCurve, HoldsItsBoundAndTheNewestPoint) {
   EXPECT_EQ(points.front().x, 0);
   EXPECT_EQ(points.back().x, 123456);
   EXPECT_EQ(points.back().y, 246912);
-  // Evenly spread, but for the newest.
+  // Evenly spaced, except the newest point.
   for (size_t i = 2; i + 1 < points.size(); ++i) {
     ASSERT_EQ(points[i].x - points[i - 1].x, points[1].x - points[0].x) << i;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The real server before clients of every kind, on loopback.
+// The real server with clients of every kind, on loopback.
 #include "launch/tools/web/web_server.h"
 
 #include <gmock/gmock.h>
@@ -153,7 +153,7 @@ TEST_F(WebServerTest, BehindAForwardedPortItIsLookedAtAndSteered) {
     EXPECT_THAT(ask("GET /?token=" + server.token(), host, "\r\n"), StartsWith("HTTP/1.1 200"));
     EXPECT_THAT(order(host, "http://" + host), StartsWith("HTTP/1.1 400")) << host;  // no verb
   }
-  // Another page that is forwarded to the same computer is none of ours.
+  // A different page that is forwarded to the same computer is not trusted.
   EXPECT_THAT(order("127.0.0.1:18470", "http://127.0.0.1:18471"), StartsWith("HTTP/1.1 403"));
 }
 
@@ -204,7 +204,7 @@ TEST_F(WebServerTest, OneRunIsShownAlone) {
 TEST_F(WebServerTest, LongRequestsEndAtTheirBounds) {
   const WebServer server(Options());
   const std::string token = "X-Shoal-Token: " + server.token() + "\r\n";
-  // None of these is answered with what was asked for, and each connection ends.
+  // The server grants none of these requests and closes each connection.
   for (const std::string& request : {
            Request("GET /" + std::string(1'000'000, 'a')),
            Request("GET /", "X: " + std::string(1'000'000, 'a') + "\r\n"),
@@ -265,7 +265,7 @@ TEST_F(WebServerTest, SlowClientsAreCutOffAndOthersAnswered) {
     slow.back()->Send("GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nX-");
   }
   for (int i = 0; i < 60; ++i) slow.push_back(std::make_unique<PageConnection>(server.port()));
-  // Within the time that two rounds of them take, the server closes all of them by itself.
+  // The server closes all connections by itself within the duration of two rounds.
   for (const auto& client : slow) {
     EXPECT_THAT(client->Answer(), AnyOf(::testing::IsEmpty(), StartsWith("HTTP/1.1 400")));
   }
