@@ -277,9 +277,8 @@ void CheckKindsOfFiles(const fs::path& run) {
 RunMeta ReadMetaToGoOn(const fs::path& run, std::vector<std::string>* lines) {
   RunMeta meta;
   Refusing(
-      fmt::format("remove it, and the run goes on without its times and the keys that were changed "
-                  "while it ran",
-                  kMetaFile),
+      "remove it, and the run goes on without its times and the keys that were changed while it "
+      "ran",
       [&] { meta = ReadRunMeta(run); });
   if (Exists(run / kMetaFile)) return meta;
   Throws([&] { meta.env_steps = ReadAccountBefore(run).stored_steps; });
