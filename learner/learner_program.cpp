@@ -19,8 +19,9 @@ namespace shoal::learner {
 namespace {
 
 ResizableAgent::Make MakeAgentOf(const RunConfig& run, nn::Precision precision,
-                                 const AgentFactory& make) {
-  return [&run, precision, make](int threads) {
+                                 const AgentFactory& make, NodeAffinity* affinity) {
+  return [&run, precision, make, affinity](int threads) {
+    if (affinity != nullptr) affinity->FitTo(threads);
     nn::SetThreads(threads);
     return make(run.config, run.spec, precision);
   };
@@ -30,13 +31,14 @@ ResizableAgent::Make MakeAgentOf(const RunConfig& run, nn::Precision precision,
 
 LearnerProgram::LearnerProgram(const std::filesystem::path& folder, const ProcessName& name,
                                const RunConfig& run, int threads, link::Hub& hub,
-                               const AgentFactory& make)
+                               const AgentFactory& make, NodeAffinity* affinity)
     : folder_(folder),
       name_(name),
       run_(run),
       session_(NextSession(folder, name.Text(), WallTimeNs())),
       precision_(nn::ChoosePrecision(run.config.learner.precision, run.spec.HasPixels())),
-      agent_(MakeAgentOf(run_, precision_, make), threads),
+      affinity_(affinity),
+      agent_(MakeAgentOf(run_, precision_, make, affinity_), threads),
       checkpoints_(folder, run),
       restored_(Restore()),
       update_page_(folder, agent_.updates()),
@@ -49,8 +51,8 @@ LearnerProgram::LearnerProgram(const std::filesystem::path& folder, const Proces
       control_subscriber_(hub, [this](const ControlMessage& m) { control_.OnMessage(m, Now()); }) {
   log::Info("session {}: {}, {} ({}), {}, batches of {}, {}", session_,
             run.config.learner.algorithm, nn::ToString(precision_), nn::CpuIsa(),
-            DescribeThreads(run.config, run.spec, threads, UsableCores()), run.config.learner.batch,
-            run.spec.Summary());
+            DescribeThreads(run.config, run.spec, threads, UsableCores(Limits())),
+            run.config.learner.batch, run.spec.Summary());
 }
 
 int LearnerProgram::Run() {
@@ -106,15 +108,20 @@ int LearnerProgram::Resize(int threads) {
   try {
     // The count comes from a command to the running learner, so a bad one is reported and ignored.
     if (threads < 1) throw UsageError("learner.threads = {}: expected at least 1", threads);
-    CheckCores("learner.threads", threads, ReadCoreLimits());
+    CheckCores("learner.threads", threads, Limits());
     agent_.Resize(threads);
     log::Info("{} from update {} on",
-              DescribeThreads(run_.config, run_.spec, threads, UsableCores()),
+              DescribeThreads(run_.config, run_.spec, threads, UsableCores(Limits())),
               agent_.updates() + 1);
   } catch (const Error& error) {
+    if (affinity_ != nullptr) affinity_->FitTo(agent_.threads());
     log::Warning("{}; it stays {}", error.what(), agent_.threads());
   }
   return agent_.threads();
+}
+
+CoreLimits LearnerProgram::Limits() const {
+  return affinity_ == nullptr ? ReadCoreLimits() : affinity_->Limits();
 }
 
 void LearnerProgram::StartFresh() {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "common/base/usable_cores.h"
 #include "common/config/run_config.h"
 #include "common/link/hub.h"
 #include "common/link/reader.h"
@@ -20,6 +21,7 @@
 #include "learner/batch_feed.h"
 #include "learner/checkpoint_store.h"
 #include "learner/hub_learner_sink.h"
+#include "learner/node_affinity.h"
 #include "learner/pending_evaluations.h"
 
 namespace shoal::learner {
@@ -30,10 +32,12 @@ class LearnerProgram {
  public:
   // Makes the learner `name` of the run in `folder`. Restores the newest checkpoint, or starts
   // without one. Its networks use `threads` threads. `make` makes the run's agent; tests pass a
-  // cheaper agent. The same thread must construct and run the program. Borrows the hub. Throws
-  // Error.
+  // cheaper agent. `affinity` places the threads of a process of its own; null leaves them where
+  // they are. The same thread must construct and run the program. Borrows the hub and `affinity`.
+  // Throws Error.
   LearnerProgram(const std::filesystem::path& folder, const ProcessName& name, const RunConfig& run,
-                 int threads, link::Hub& hub, const AgentFactory& make = learner::MakeAgent);
+                 int threads, link::Hub& hub, const AgentFactory& make = learner::MakeAgent,
+                 NodeAffinity* affinity = nullptr);
 
   // Trains until the run stops and returns the exit code: 0 after a stop request, kUnwrittenExit if
   // the last checkpoint could not be written, 1 if the coordinator was lost. Throws Error.
@@ -47,11 +51,15 @@ class LearnerProgram {
   // Changes the agent's number of threads, if possible, and returns the resulting number.
   int Resize(int threads);
 
+  // Limits of the process on cores, whatever node its threads are kept on.
+  CoreLimits Limits() const;
+
   const std::filesystem::path folder_;
   const ProcessName name_;
   const RunConfig run_;
   const uint64_t session_;
   const nn::Precision precision_;
+  NodeAffinity* const affinity_;
   ResizableAgent agent_;
   CheckpointStore checkpoints_;
   const std::optional<CheckpointState> restored_;

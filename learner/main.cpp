@@ -16,6 +16,7 @@
 #include "common/tasks/task_library.h"
 #include "learner/command_line.h"
 #include "learner/learner_program.h"
+#include "learner/node_affinity.h"
 #include "learner/openmp_environment.h"
 
 namespace {
@@ -36,7 +37,10 @@ int Run(int argc, char** argv) {
   const shoal::RunMembership member(options.run);
   shoal::dds::Bus bus(shoal::dds::FindEndpoint(options.run, run.config.transport, options.endpoint),
                       shoal::dds::Role::kLearner);
-  return shoal::learner::LearnerProgram(options.run, name, run, threads, bus).Run();
+  shoal::learner::NodeAffinity affinity;
+  return shoal::learner::LearnerProgram(options.run, name, run, threads, bus,
+                                        shoal::learner::MakeAgent, &affinity)
+      .Run();
 }
 
 }  // namespace

@@ -7,6 +7,10 @@
 
 #include <algorithm>
 #include <functional>
+#include <memory>
+#include <set>
+#include <thread>
+#include <vector>
 
 #include "common/base/error.h"
 #include "common/nn/parallel.h"
@@ -176,6 +180,40 @@ TEST(ReplicatedAgent, ReplicasStayEqualBitForBit) {
   for (const Agent* agent : replicas.each) {
     EXPECT_THAT(Differences(agent->AllTensors(), after), IsEmpty());
   }
+}
+
+// An agent that records which threads make and run it.
+struct ThreadRecorder final : Agent {
+  UpdateOutcome Update(const BatchView&, const OnStageEnd&) override {
+    ran = std::this_thread::get_id();
+    return {};
+  }
+  uint64_t updates() const override { return 0; }
+  TensorMap PolicyTensors() const override { return {}; }
+  TensorMap AveragedPolicyTensors() const override { return {}; }
+  TensorMap AllTensors() const override { return {}; }
+  void Restore(const TensorMap&, const std::string&) override {}
+
+  const std::thread::id made = std::this_thread::get_id();
+  std::thread::id ran;
+};
+
+// Memory is on the NUMA node of the thread that writes it first.
+TEST(ReplicatedAgent, EachReplicaIsMadeByTheThreadThatRunsIt) {
+  std::vector<ThreadRecorder*> each;
+  const auto whole = MakeReplicatedAgent(SmallConfig(), Precision::kF32, 3, [&](Engine*) {
+    auto agent = std::make_unique<ThreadRecorder>();
+    each.push_back(agent.get());
+    return agent;
+  });
+  const RandomBatch batch(SmallSpec(), SmallConfig().learner.batch, 0);
+  whole->Update(batch.View());
+  std::set<std::thread::id> threads;
+  for (const ThreadRecorder* agent : each) {
+    EXPECT_EQ(agent->ran, agent->made);
+    threads.insert(agent->made);
+  }
+  EXPECT_EQ(threads.size(), 3u);
 }
 
 TEST(ReplicatedAgent, WhatOneReplicaCannotUseChangesNone) {
