@@ -34,7 +34,7 @@ Pieces Cut(const dnnl::memory::dims& shape) {
 }
 
 dnnl::memory::desc PieceOf(const dnnl::memory::desc& desc, const Pieces& pieces, int piece) {
-  dnnl::memory::dims sizes = desc.dims(), offsets(sizes.size(), 0);
+  dnnl::memory::dims sizes = DimsOf(desc), offsets(sizes.size(), 0);
   const auto d = size_t(pieces.dimension);
   offsets[d] = piece * pieces.length;
   sizes[d] = std::min(pieces.length, sizes[d] - offsets[d]);
