@@ -106,9 +106,10 @@ std::string HostTable(std::span<const Report> reports, const LearnerSpeed& speed
   const ScaleConstants constants = ReadScaleConstants(reports);
   const auto [kept, actors] = KeptByActors(reports);
   std::string text = fmt::format(
-      "{} actors on {} cores make {:.2f} of {} times one.\n\n"
-      "| cores | samples per insert | learner threads | cores of actors | of the replay server | "
-      "idle | env steps/s |\n| --- | --- | --- | --- | --- | --- | --- |\n",
+      "{} actors on {} cores make {:.2f} of {} times the env steps per second of one actor.\n\n"
+      "| cores of the host | samples per insert | learner threads | cores of the actors | "
+      "cores of the replay server | idle cores | env steps/s |\n| --- | --- | --- | --- | --- | "
+      "--- | --- |\n",
       actors, actors, kept, actors);
   for (const int cores : kCores) {
     for (const double samples : kHostSamples) {

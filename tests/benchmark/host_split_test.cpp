@@ -82,7 +82,7 @@ TEST(HostSplit, NeedsARowOfActorsOnAllCores) {
   report.rows.push_back(
       row("32 actors of FetchReach with one 84x84 camera, fast, on 32 cores, and more"));
   EXPECT_THAT(HostTable({&report, 1}, kPerfect),
-              AllOf(HasSubstr("16 actors on 16 cores make 0.80 of 16 times one."),
+              AllOf(HasSubstr("16 actors on 16 cores make 0.80 of 16 times the env steps"),
                     HasSubstr("| 128 | 64 |")));
 }
 

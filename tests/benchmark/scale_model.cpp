@@ -25,6 +25,9 @@ constexpr const char* kGatherRow =
     "128 samples of (3, 84, 84), drawn and shifted, of 200000 records";
 constexpr const char* kHandoverRow =
     "batches handed to a learner on the same host, beside the gather";
+constexpr const char* kHandoverFarRow =
+    "batches handed to a learner on the same host, beside the gather, compared with: over the "
+    "network";
 constexpr const char* kUpdateRow = "SAC update, compact, batch 128 of (6, 84, 84), auto";
 constexpr const char* kActorRow = "1 actor of FetchReach with one 84x84 camera, fast";
 
@@ -36,7 +39,7 @@ const ReportedRow& RowOf(std::span<const Report> reports, std::string_view stage
   throw RuntimeError("none of the files has a row '{}'", stage);
 }
 
-// The most exceeded resource and the number of it that would suffice; "nothing".
+// The most overloaded resource and the number of it that would suffice; "nothing".
 std::string NextLimit(const ScaleLoad& load) {
   const std::pair<double, const char*> shares[] = {{load.replay, "replay servers"},
                                                    {load.learner, "learner cores"},
@@ -72,20 +75,23 @@ ScaleLoad LoadOf(const ScaleConstants& constants, double transitions_per_second,
 }
 
 std::string ScaleTables(const ScaleConstants& constants) {
-  std::string text = "| measured | figure | row |\n| --- | --- | --- |\n";
+  std::string text =
+      "| measured quantity | value | row of the measurement |\n| --- | --- | --- |\n";
   const auto constant = [&](const char* what, double value, const char* unit, const char* row) {
     text += fmt::format("| {} | {:.4g} {} | {} |\n", what, value, unit, row);
   };
-  constant("one actor on a core", constants.actor_rate, "env steps/s", kActorRow);
-  constant("the replay takes a transition", 1e6 * constants.intake, "us of CPU", kIntakeRow);
-  constant("the replay gathers a batch", 1e3 * constants.gather, "ms of CPU", kGatherRow);
-  constant("it hands a batch to a learner on its host", 1e3 * kBatchBytes * constants.handover_near,
-           "ms of CPU", kHandoverRow);
-  constant("to one on another host", 1e3 * kBatchBytes * constants.handover_far, "ms of CPU",
-           kHandoverRow);
-  constant("one update on one thread", 1e3 * constants.update, "ms of CPU", kUpdateRow);
+  constant("env steps of one actor on one core", constants.actor_rate, "env steps/s", kActorRow);
+  constant("the replay server receives one transition", 1e6 * constants.intake, "us of CPU",
+           kIntakeRow);
+  constant("the replay server gathers one batch", 1e3 * constants.gather, "ms of CPU", kGatherRow);
+  constant("one batch is handed to a learner on the same host",
+           1e3 * kBatchBytes * constants.handover_near, "ms of CPU", kHandoverRow);
+  constant("one batch is handed to a learner on another host",
+           1e3 * kBatchBytes * constants.handover_far, "ms of CPU", kHandoverFarRow);
+  constant("the learner computes one update on one thread", 1e3 * constants.update, "ms of CPU",
+           kUpdateRow);
 
-  text += "\n| carried by one, in env steps/s |";
+  text += "\n| env steps/s that one resource carries |";
   for (const double samples : kSamplesPerInsert) {
     text += fmt::format(" {:.0f} samples per insert |", samples);
   }
@@ -97,15 +103,20 @@ std::string ScaleTables(const ScaleConstants& constants) {
     }
     text += "\n";
   };
-  carried("replay, learner on its host", false, &ScaleLoad::replay);
-  carried("replay, learner on another", true, &ScaleLoad::replay);
-  carried("core of a learner", false, &ScaleLoad::learner);
-  carried("10 Gb/s of records", false, &ScaleLoad::link_in);
-  carried("10 Gb/s of batches", true, &ScaleLoad::link_out);
+  carried("replay server, learner on the same host", false, &ScaleLoad::replay);
+  carried("replay server, learner on another host", true, &ScaleLoad::replay);
+  carried("core of the learner", false, &ScaleLoad::learner);
+  carried("10 Gb/s link, records", false, &ScaleLoad::link_in);
+  carried("10 Gb/s link, batches to a learner on another host", true, &ScaleLoad::link_out);
 
-  text +=
-      "\n| actors | samples per insert | env steps/s | replay | learner core | link in | link out "
-      "| what the most exceeded needs |\n| --- | --- | --- | --- | --- | --- | --- | --- |\n";
+  text += R"(
+The next table has the loads of the replay server, the learner and the link: 1 means that one
+replay server, one core of the learner or one direction of one link is fully used. The learner
+is on another host.
+
+| actors | samples per insert | env steps/s | replay server | learner | link in | link out |)";
+  text += " needed of the most overloaded resource |\n";
+  text += "| --- | --- | --- | --- | --- | --- | --- | --- |\n";
   for (const int actors : kActors) {
     for (const double samples : kSamplesPerInsert) {
       const double rate = actors * constants.actor_rate;
