@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Assembles batches from their parts, in its own buffers. Pure: no DDS, threads or clocks.
+// Assembles batches from their parts, in its own buffers. Uses no DDS, no threads and no clock.
 //
-// A request for a batch has an id; the answer is a set of parts that together cover the batch's
-// bytes (common/wire/batch_schema.h). Parts may arrive in any order, interleaved with other
-// batches, and twice. If a request is answered again (it was sent again, or the replay has
-// restarted), the new answer may hold other transitions. Parts of two answers are never mixed: the
-// newer answer starts over. The replay's count of steps at the draw distinguishes answers.
+// A request for a batch has an id. The answer is a set of parts that together contain the batch's
+// bytes (common/wire/batch_schema.h). Parts may arrive in any order, between parts of other
+// batches, and more than once. A request may be answered again, because the learner sent the
+// request again or because the replay was restarted. The new answer may contain other transitions.
+// Parts of two answers are never mixed: when the first part of the new answer arrives, all parts of
+// the old answer are dropped. Two answers are distinguished by the replay's count of stored steps.
 //
-// At most `buffers` batches are assembled at once. A part of any other batch is dropped; the caller
-// counts it.
+// At most `buffers` batches are assembled at the same time. A part of any other batch is dropped;
+// the caller counts this part.
 #pragma once
 
 #include <cstdint>
@@ -24,13 +25,13 @@ class BatchAssembler {
  public:
   enum class Verdict {
     kTaken,           // copied into its batch
-    kStartedOver,     // taken, as the first part of another answer; the old answer was dropped
-    kCompleted,       // taken, and its batch is whole now
-    kDuplicate,       // was taken before
-    kUnknownRequest,  // never expected, or already released
-    kStaleSession,    // answers another learner session
-    kWrongSpec,       // another observation spec
-    kMalformed,       // sizes or offsets that no batch of this layout has
+    kStartedOver,     // copied, as the first part of a new answer; the old answer was dropped
+    kCompleted,       // copied; the batch is complete now
+    kDuplicate,       // ignored: the part arrived before
+    kUnknownRequest,  // ignored: the request was never expected or is already released
+    kStaleSession,    // ignored: the part is for another learner session
+    kWrongSpec,       // ignored: the part has another observation spec
+    kMalformed,       // ignored: no batch of this layout has these sizes or offsets
   };
 
   struct Assembled {
@@ -38,11 +39,11 @@ class BatchAssembler {
     uint64_t stored_records, stored_steps, unsampleable_steps;
   };
 
-  // Batches of `batch_bytes` each; memory for `buffers` of them is allocated at once.
+  // Allocates memory for `buffers` batches of `batch_bytes`.
   BatchAssembler(uint64_t spec_hash, uint64_t learner_session, uint64_t batch_bytes, int buffers);
 
-  // Takes a free buffer for `request`, which must not be in use. Returns false if no buffer is
-  // free.
+  // Reserves a free buffer for `request`, which must not have a buffer yet. Returns false if no
+  // buffer is free.
   bool Expect(uint64_t request);
   Verdict Add(const BatchPart& part);
   // Returns the batch of `request` if it is complete.
@@ -60,14 +61,14 @@ class BatchAssembler {
     bool whole = false;
     uint64_t stored_records = 0, stored_steps = 0;  // distinguish answers
     uint64_t unsampleable_steps = 0;
-    std::vector<Piece> pieces;  // per part
-    uint32_t missing = 0;       // missing parts; 0 without pieces: no part has arrived
+    std::vector<Piece> pieces;  // one for each part; empty until the first part arrives
+    uint32_t missing = 0;       // number of missing parts, if `pieces` is not empty
   };
 
   Slot* Find(uint64_t request);
   bool WellFormed(const BatchPart& part) const;
-  // Whether the slot's pieces, all of which have arrived, cover the batch without holes or
-  // overlaps.
+  // Whether the slot's pieces cover the batch without gaps or overlaps. All pieces must have
+  // arrived.
   bool Tiled(const Slot& slot) const;
 
   const uint64_t spec_hash_, learner_session_, batch_bytes_;

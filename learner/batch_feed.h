@@ -17,12 +17,12 @@ class BatchFeed {
  public:
   virtual ~BatchFeed() = default;
   virtual BatchStream& stream() = 0;
-  // Keeps acknowledging chunks after the coordinator is lost, until their senders go quiet.
+  // After the coordinator is lost, continues to acknowledge chunks until no more chunks arrive.
   virtual void DrainAfterCoordinatorLoss() {}
 };
 
-// Makes the feed that the run's algorithm needs, of a replay or of rollouts. `updates`: number of
-// updates done before. Borrows the hub. Throws Error.
+// Makes the feed that the run's algorithm needs: batches of a replay, or rollouts. `updates`:
+// number of updates before the start. Borrows the hub. Throws Error.
 std::unique_ptr<BatchFeed> MakeFeed(const std::filesystem::path& folder, const RunConfig& run,
                                     uint64_t learner_session, uint64_t updates, link::Hub& hub);
 

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Batches pulled from the replay: keeps learner.request_credits requests outstanding. A request is
-// sent again if no part of its answer has arrived for a while: the replay has restarted, or its
-// limiter withholds the batch, in which case a repeat is harmless. Independent of DDS: `send` sends
-// requests, OnPart receives parts, and OnSlot receives messages about batches in shared memory.
+// Requests batches from the replay. learner.request_credits requests are outstanding at any time. A
+// request is sent again if no part of its answer has arrived for some time. Either the replay was
+// restarted, or its limiter withholds the batch; in the second case, the repeated request does no
+// harm. Does not depend on DDS: `send` sends requests, OnPart receives parts, and OnSlot receives
+// messages about batches in shared memory.
 //
-// A batch in shared memory is read without a copy; later requests release its slot. Memory that
-// cannot be used is logged and refused in every further request; the replay then sends parts.
+// A batch in shared memory is read without a copy; later requests release its slot. If the memory
+// cannot be used, this is logged, and every further request refuses the memory; the replay then
+// sends parts.
 //
-// Threads: receive threads call OnPart and OnSlot; one other thread calls the rest. `send` is
-// called without a lock held. Memory: request_credits + 1 batches, whose pages are used only if
-// parts arrive.
+// Threads: receive threads call OnPart and OnSlot; one other thread calls the other functions.
+// `send` is called without a lock held. Memory: request_credits + 1 batches; the pages are used
+// only if parts arrive.
 #pragma once
 
 #include <chrono>
@@ -28,11 +30,12 @@ namespace shoal::learner {
 
 class BatchSource final : public BatchStream {
  public:
-  // Sends a request. Returns false if it was not sent; BatchSource tries again.
+  // Sends a request. Returns false if the request was not sent; BatchSource then tries again.
   using Send = std::function<bool(const SampleRequest&)>;
 
-  // `first_request` is the number of the next update, so that a resumed learner continues with the
-  // right request. In lockstep, requests wait for their phase and end with the run's last update.
+  // `first_request`: number of the next update, so that a resumed learner continues with the right
+  // request. In lockstep, the replay answers a request in the phase of its update, and the last
+  // request is for the run's last update.
   BatchSource(const RunConfig& run, uint64_t learner_session, uint64_t first_request, Send send,
               std::chrono::milliseconds resend_after = kResendAfter);
 
@@ -47,8 +50,8 @@ class BatchSource final : public BatchStream {
  private:
   struct Outstanding {
     uint64_t request = 0;
-    bool sent = false;       // at least once
-    SteadyTime next_send{};  // time of the next sending; max() once its batch is complete
+    bool sent = false;       // whether the request was sent at least once
+    SteadyTime next_send{};  // time of the next sending; max() if the batch is complete
   };
 
   SampleRequest MakeRequest(uint64_t request) const SHOAL_REQUIRES(mutex_);
@@ -61,7 +64,7 @@ class BatchSource final : public BatchStream {
   void TryAgain(const std::vector<uint64_t>& unsent) SHOAL_REQUIRES(mutex_);
   std::optional<Batch> TakeFirst() SHOAL_REQUIRES(mutex_);
   std::optional<Batch> FindBatch(uint64_t request) SHOAL_REQUIRES(mutex_);
-  // Returns nothing if the memory cannot be used; the batch is then requested again.
+  // Returns empty if the memory cannot be used; the batch is then requested again.
   std::optional<Batch> OpenSlot(uint64_t request) SHOAL_REQUIRES(mutex_);
   void SayWay(bool shared) SHOAL_REQUIRES(mutex_);
   void SayRefusal(const char* why) SHOAL_REQUIRES(mutex_);
@@ -84,11 +87,12 @@ class BatchSource final : public BatchStream {
   SlotBatches slots_ SHOAL_GUARDED_BY(mutex_);
   std::deque<Outstanding> outstanding_ SHOAL_GUARDED_BY(mutex_);  // ascending request ids
   uint64_t next_request_ SHOAL_GUARDED_BY(mutex_);
-  // Request whose batch the caller holds; 0 = none.
+  // Request whose batch the caller uses; 0 = no batch.
   uint64_t handed_out_ SHOAL_GUARDED_BY(mutex_) = 0;
-  uint64_t released_ SHOAL_GUARDED_BY(mutex_) = 0;         // highest request handed out before
-  std::optional<bool> shared_ SHOAL_GUARDED_BY(mutex_);    // batches are in shared memory; logged
-  uint64_t other_spec_hash_ SHOAL_GUARDED_BY(mutex_) = 0;  // of a refused part; 0 = none
+  uint64_t released_ SHOAL_GUARDED_BY(mutex_) = 0;  // highest request whose batch was released
+  // Whether batches are in shared memory, according to the last log line.
+  std::optional<bool> shared_ SHOAL_GUARDED_BY(mutex_);
+  uint64_t other_spec_hash_ SHOAL_GUARDED_BY(mutex_) = 0;  // hash of a refused part; 0 = no part
   std::optional<SteadyTime> refusal_said_ SHOAL_GUARDED_BY(mutex_);
   BatchCounters counters_ SHOAL_GUARDED_BY(mutex_);
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A checkpoint for the learner: its files (common/checkpoint) and the tensors in the files.
+// A checkpoint as the learner uses it: the files (common/checkpoint) and the tensors in the files.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@ namespace shoal::learner {
 
 struct Checkpoint {
   CheckpointState state;
-  nn::TensorMap tensors;    // of learner.safetensors
-  std::string description;  // policy.json; empty if there is none
+  nn::TensorMap tensors;    // tensors of learner.safetensors
+  std::string description;  // text of policy.json; empty if the checkpoint has no policy.json
   std::filesystem::path folder;
 };
 
@@ -29,10 +29,10 @@ void WriteCheckpoint(const std::filesystem::path& parent, const CheckpointState&
 // See ReadCheckpointFiles.
 Checkpoint ReadCheckpoint(const std::filesystem::path& folder, uint64_t spec_hash);
 
-// A resumed run repeats exactly only in the precision of the checkpoint. `asked` is
-// learner.precision, `chosen` the precision on this machine. If the checkpoint's precision differs
-// from `chosen`: throws Error (kUsage) with a remedy if `asked` is auto, else returns a warning.
-// Empty if they agree.
+// Checks the precision of a checkpoint, because a resumed run repeats exactly only in the same
+// precision. `asked`: value of learner.precision. `chosen`: precision on this machine. If the
+// checkpoint's precision is `chosen`, returns an empty text. If the precisions differ and `asked`
+// is "auto", throws Error (kUsage) with a remedy; otherwise, returns a warning.
 std::string CheckPrecision(const Checkpoint& checkpoint, const std::string& asked,
                            nn::Precision chosen);
 

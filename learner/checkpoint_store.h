@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The checkpoints of a run: RUN/checkpoints. Keeps the newest three checkpoints and those whose
-// evaluation is pending. Never removes `best`, which belongs to the coordinator, or files with
-// other names.
+// The checkpoints of a run: RUN/checkpoints. Keeps the newest three checkpoints and the checkpoints
+// whose evaluation is pending. Never removes `best`, which belongs to the coordinator, or files
+// with other names.
 //
-// One thread, one learner per run.
+// Only one thread may use the store, and only one learner in each run.
 #pragma once
 
 #include <chrono>
@@ -22,24 +22,25 @@ namespace shoal::learner {
 
 class CheckpointStore {
  public:
-  // Makes the folder and removes incomplete files of a killed learner. Throws Error.
+  // Makes the folder, and removes incomplete files that a killed learner left. Throws Error.
   CheckpointStore(const std::filesystem::path& run_folder, const RunConfig& run);
 
   // Hash of the configuration with every default; the state's config_hash.
   uint64_t config_hash() const { return config_hash_; }
 
-  // Returns the newest valid checkpoint; none in a new run. Newer broken checkpoints are renamed to
-  // refused_NAME, with a warning that gives the reason. If there are checkpoints but none is valid,
-  // throws Error that names the fault of the newest.
+  // Returns the newest valid checkpoint; empty in a new run. Damaged checkpoints that are newer are
+  // renamed to refused_NAME, with a warning that gives the reason. If there are checkpoints but
+  // none is valid, throws Error that names the fault of the newest checkpoint.
   std::optional<Checkpoint> RestoreNewest();
 
-  // Writes a checkpoint, returns its name, and removes old checkpoints, except those in `wanted`. A
-  // checkpoint that cannot be written is reported, kept in memory and written by a later call of
-  // Write or Retry; until then no earlier checkpoint is removed. At most the newest kMostUnwritten
-  // stay in memory.
+  // Writes a checkpoint, returns its name, and removes old checkpoints, except those in `wanted`.
+  // If the checkpoint cannot be written, this is reported, and the checkpoint is kept in memory. A
+  // later call of Write or Retry writes it; until then, no earlier checkpoint is removed. Only the
+  // newest kMostUnwritten checkpoints stay in memory.
   std::string Write(const CheckpointState& state, nn::TensorMap learner, nn::TensorMap policy,
                     const std::set<std::string>& wanted);
-  // Tries again to write the checkpoints in memory; at most every kRetryPeriod, unless `now`.
+  // Tries again to write the checkpoints in memory. Unless `now` is set, tries at most once in each
+  // kRetryPeriod.
   void Retry(const std::set<std::string>& wanted, bool now = false);
   size_t unwritten() const { return unwritten_.size(); }
   // Updates of the newest checkpoint that is not written yet; empty if all are written.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Detects evaluation points, which are multiples of eval.interval env steps, and sends the F32
-// parameters of the checkpoint made there to the evaluation actor.
+// Detects evaluation points, which are the multiples of eval.interval env steps. At each point,
+// sends the F32 parameters of the point's checkpoint to the evaluation actor.
 #pragma once
 
 #include <cstdint>
@@ -14,29 +14,31 @@
 
 namespace shoal::learner {
 
-// Borrows agent and sink. One thread.
+// Borrows agent and sink. Only one thread may use an object.
 class EvaluationPoints {
  public:
-  // `env_steps`: env steps stored when the previous learner of the run stopped; points up to this
-  // number are already done.
+  // `env_steps`: env steps stored when the previous learner of the run stopped. The previous
+  // learner handled the points up to this number.
   EvaluationPoints(const RunConfig& run, uint64_t session, uint64_t env_steps, const Agent& agent,
                    LearnerSink& sink);
 
   // Returns true if `env_steps` has reached or passed a multiple of the interval since the last
-  // call. Several multiples passed at once count as one point.
+  // call. If several multiples were passed since then, they count as one point.
   bool Reached(uint64_t env_steps);
 
-  // Replaces eval.interval; the next point is its first multiple beyond `env_steps`.
+  // Replaces eval.interval. The next point is the first multiple of `interval` beyond `env_steps`.
   void SetInterval(uint64_t interval, uint64_t env_steps);
   uint64_t interval() const { return interval_; }
 
   // Sends the agent's parameters, which must be those of `checkpoint`. If the transport does not
-  // accept them, Retry sends them later; a newer point replaces an unsent one.
+  // accept the parameters, Retry sends them later. If a newer point is reached before, only the
+  // parameters of the newer point are sent.
   void Send(const std::string& checkpoint, uint64_t env_steps);
   void Retry();
 
-  // Updates of the point sent last; 0 = none yet.
+  // Updates of the point whose parameters were sent last; 0 if none were sent yet.
   uint64_t last_updates() const { return last_updates_; }
+  // Number of points whose parameters were never sent, because a newer point replaced them.
   uint64_t overtaken() const { return overtaken_; }
 
  private:

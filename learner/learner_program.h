@@ -26,8 +26,8 @@
 
 namespace shoal::learner {
 
-// Members are in construction order. Readers are last and end first, because they write to the
-// members above them.
+// Members are in construction order. The readers are last and are destroyed first, because their
+// callbacks write to the other members.
 class LearnerProgram {
  public:
   // Makes the learner `name` of the run in `folder`. Restores the newest checkpoint, or starts

@@ -6,17 +6,19 @@
 
 namespace shoal::learner {
 
-// One thread. Messages are copied before a call returns.
+// Only one thread may use a sink. Messages are copied before a call returns.
 class LearnerSink {
  public:
   virtual ~LearnerSink() = default;
 
-  // Weights for acting. Returns false if they were not sent; send newer weights later.
+  // Sends weights for acting. Returns false if the weights were not sent; the caller then sends
+  // newer weights later.
   virtual bool Publish(const WeightsMessage& weights) = 0;
-  // Whether every reader has received the weights published last. A writer that does not wait for
-  // this starves slow readers, which then receive only the beginnings of ever newer weights.
+  // Whether every reader has received all parts of the weights that were sent last. If the learner
+  // always sends new weights before this is true, slow readers never receive complete weights.
   virtual bool WeightsArrived() = 0;
-  // Weights for an evaluation. Returns false if they were not sent; send the same weights again.
+  // Sends weights for an evaluation. Returns false if the weights were not sent; the caller then
+  // sends the same weights again.
   virtual bool Publish(const EvalWeightsMessage& weights) = 0;
   virtual void Publish(const MetricsMessage& report) = 0;
   virtual void Publish(const LearnerProgress& progress) = 0;

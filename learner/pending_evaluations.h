@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checkpoints that must not be removed, because their evaluation is pending or the coordinator may
-// be copying them as the best. Evaluations arrive in order: an evaluation of one checkpoint means
-// that earlier ones were evaluated or skipped.
+// Checkpoints that must not be removed, because their evaluation is pending or because the
+// coordinator may be copying them as the best checkpoint. Evaluations arrive in order: if an
+// evaluation of a checkpoint arrives, all earlier checkpoints were evaluated or skipped.
 #pragma once
 
 #include <cstdint>
@@ -13,14 +13,16 @@
 
 namespace shoal::learner {
 
-// Threads: any.
+// Any thread may use this class.
 class PendingEvaluations {
  public:
-  // A checkpoint was handed to the evaluation actor. Beyond kMost the oldest is dropped, so that
-  // the disk does not fill without an evaluation actor.
+  // Adds a checkpoint whose parameters were sent to the evaluation actor. If there are more than
+  // kMost checkpoints, the oldest one is dropped, so that the disk does not fill if there is no
+  // evaluation actor.
   void Add(uint64_t updates, const std::string& checkpoint);
-  // An evaluation of the checkpoint with `updates` has arrived. The checkpoint itself stays until a
-  // later evaluation arrives, because the coordinator may be copying the checkpoint.
+  // Call this function when an evaluation of the checkpoint with `updates` has arrived. Removes all
+  // earlier checkpoints. The evaluated checkpoint stays until a later evaluation arrives, because
+  // the coordinator may be copying it.
   void OnEvaluated(uint64_t updates);
   std::set<std::string> Names() const;
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Batches in the replay's shared memory. Finds the slot of each request id, and maps the slots'
-// memory into this process. The memory of a replay that has ended stays readable while it holds an
-// awaited or handed-out batch.
+// Batches in the replay's shared memory. Finds the slot of each request id, and maps the memory of
+// the slots into this process. If a replay has ended, its memory stays mapped as long as it
+// contains a batch that is awaited or in use.
 //
-// Threads: none inside; one owner.
+// Starts no threads; not thread-safe, one owner.
 #pragma once
 
 #include <cstdint>
@@ -21,9 +21,9 @@ class SlotBatches {
  public:
   enum class Verdict {
     kTaken,
-    kStartedOver,  // taken in place of another answer to the request
-    kDuplicate,    // repeated message
-    kRefused,      // slot in refused memory
+    kStartedOver,  // replaced an earlier answer to the request
+    kDuplicate,    // ignored: the same message arrived before
+    kRefused,      // ignored: the slot is in refused memory
   };
 
   SlotBatches(uint64_t learner_session, uint64_t batch_bytes)
@@ -38,21 +38,21 @@ class SlotBatches {
     return words_.at(request).unsampleable_steps;
   }
 
-  // Returns the batch of a request whose slot is known; it may be read until Release. Maps the
-  // memory on first use. Throws Error if the memory cannot be mapped or the slot does not hold the
-  // batch.
+  // Returns the batch of a request whose slot is known. The batch may be read until Release. Maps
+  // the memory at its first use. Throws Error if the memory cannot be mapped or if the slot does
+  // not contain the batch.
   uint8_t* Open(uint64_t request);
-  // Refuses the memory that holds the batch of `request`: from now on no batch is read from this
-  // memory. Returns the requests whose batches were there, which must be sent again.
+  // Refuses the memory that contains the batch of `request`: from now on no batch is read from this
+  // memory. Returns the requests whose batches were in this memory; they must be sent again.
   std::vector<uint64_t> Refuse(uint64_t request);
-  // SlotAddress::token[0] of the memory refused last; 0 = none.
+  // SlotAddress::token[0] of the memory that was refused last; 0 if no memory was refused.
   uint64_t refused_token() const { return refused_token_; }
 
   // Ends the use of the request's batch, if there is one.
   void Release(uint64_t request);
 
  private:
-  // Unmaps memories that no slot message refers to, except the newest.
+  // Unmaps each memory to which no slot message refers, except the newest memory.
   void Forget();
 
   const uint64_t learner_session_, batch_bytes_;

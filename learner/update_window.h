@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The updates of one report interval: means of their figures, and the age of their data.
+// The updates of one report interval: means of the updates' metrics (UpdateFigures), and the age of
+// the data.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +19,8 @@ class UpdateWindow {
   void Clear() { *this = UpdateWindow(); }
 
   int updates() const { return updates_; }
-  // Mean of each figure over the window's updates that have the figure, in the order of first
-  // appearance. A figure that no update has is absent.
+  // Mean of each metric over the updates in the window that have this metric. The order is that of
+  // the first appearance. If no update has a metric, the metric is absent.
   UpdateFigures Mean() const;
 
  private:
@@ -33,10 +34,10 @@ class UpdateWindow {
   std::vector<Sum> sums_;
 };
 
-// Adds the age of a batch's data: how many updates ago the weights that chose each action were
-// made. A random action counts as chosen by the untrained policy, update 0. `weights_update` (B):
-// array of the batch; `updates`: updates done so far. Weights newer than `updates` (from a learner
-// that was ahead before it restarted) give the age 0.
+// Adds the age of each row of a batch: the number of updates since the weights that chose the
+// action. A random action counts as chosen by the untrained policy, update 0. `weights_update` (B):
+// array of the batch; `updates`: number of updates so far. If the weights are newer than `updates`,
+// because the learner was restarted from an earlier checkpoint, the age is 0.
 void AddDataAges(std::span<const uint64_t> weights_update, uint64_t updates,
                  QuantileWindow* window);
 

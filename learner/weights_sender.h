@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sends the policy's parameters to the actors: at the first update, then every
+// Sends the policy's parameters to the actors: off policy after the first update, then every
 // learner.weights_period updates; in lockstep at the end of each phase; on policy after each
-// update. The type is BF16 if the precision is bf16, else F32. On policy the type is always F32,
-// because the actors' log-probabilities are the denominator of a ratio whose numerator the learner
-// computes with unrounded parameters (Eq. 24).
+// update. The type is BF16 if the precision is bf16, else F32. On policy the type is always F32:
+// the actors' log-probabilities are the denominator of a ratio (Eq. 24), and the learner computes
+// the numerator with unrounded parameters.
 //
 // If readers have not yet received the last weights, the next weights are delayed by at most
-// kPatience, so that slow readers are not starved. There is no delay in lockstep and on policy,
-// where actors wait for the next weights.
+// kPatience, so that slow readers also receive complete weights. In lockstep and on policy there is
+// no delay, because actors wait for the next weights.
 #pragma once
 
 #include <chrono>
@@ -22,18 +22,18 @@
 
 namespace shoal::learner {
 
-// Borrows agent and sink. One thread.
+// Borrows agent and sink. Only one thread may use an object.
 class WeightsSender {
  public:
   WeightsSender(const RunConfig& run, nn::Precision precision, uint64_t session, const Agent& agent,
                 LearnerSink& sink);
 
-  // Call after each update: sends when it is time.
+  // Call this function after each update. Sends weights if they are due.
   void AfterUpdate(uint64_t env_steps);
-  // Sends at once: after a restart, so that actors need not wait.
+  // Sends weights now. Used after a restart, so that actors need not wait.
   void Send(uint64_t env_steps);
 
-  // Sends weights again that the transport did not accept, if actors wait for them.
+  // If the transport did not accept weights for which actors wait, sends the weights again.
   void Retry(uint64_t env_steps) {
     if (due_) Send(env_steps);
   }
@@ -43,14 +43,14 @@ class WeightsSender {
   uint64_t period() const { return period_; }
 
   uint64_t sent() const { return sent_; }
-  // Attempts that the transport did not accept; newer weights follow.
+  // Number of attempts that the transport did not accept; newer weights follow.
   uint64_t unsent() const { return unsent_; }
 
   static constexpr std::chrono::milliseconds kPatience{500};
 
  private:
-  // Weights are copied three times: out of the agent, into these bytes, and by the transport. At
-  // most two copies exist at once.
+  // Returns the weights as bytes. Weights are copied three times: from the agent, into these bytes,
+  // and by the transport. At most two copies exist at the same time.
   std::string Serialised() const;
   bool Due(uint64_t updates);
 

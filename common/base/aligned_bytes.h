@@ -16,7 +16,7 @@ class AlignedBytes {
   static constexpr uint64_t kAlignment = 64;
 
   AlignedBytes() = default;  // no bytes
-  // Throws Error when there is no memory.
+  // Throws Error if the memory cannot be allocated.
   explicit AlignedBytes(uint64_t bytes)
       // aligned_alloc takes whole multiples of the alignment.
       : bytes_(static_cast<uint8_t*>(

@@ -6,7 +6,8 @@ namespace shoal {
 
 // Release number, e.g. "0.1.0".
 const char* BuildVersion();
-// Git commit, with "+" when the tree had changes; "unknown" outside a git checkout.
+// Git commit of the build. "+" is appended if the checkout had uncommitted changes. "unknown" if
+// the sources were not a git checkout.
 const char* BuildCommit();
 // SPDX identifier.
 inline constexpr char kLicence[] = "Apache-2.0";

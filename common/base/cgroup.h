@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The control groups (version 1 or 2) that contain this process, as folders of limits. The limits
-// of all these groups apply together.
+// Finds the folders of the control groups (version 1 or 2) that contain this process. Each folder
+// has files with limits. The limits of all these groups apply together.
 #pragma once
 
 #include <filesystem>
@@ -11,12 +11,12 @@ namespace shoal {
 
 struct CgroupFolder {
   std::filesystem::path path;
-  int version = 2;  // 1 or 2: files of limits have other names
+  int version = 2;  // 1 or 2; the names of the files depend on the version
 };
 
-// Folders of the controller ("cpu", "memory"), from the process's own group outwards to the mount.
-// If the process sees only a part of the hierarchy, some of these folders do not exist. Reads below
-// `root`, which is "/" except in tests.
+// Returns the folders for `controller` ("cpu", "memory"), from the process's own group up to the
+// mount point. If the process sees only a part of the hierarchy, some of these folders do not
+// exist. Reads files below `root`, which is "/" except in tests.
 std::vector<CgroupFolder> CgroupFolders(const std::string& controller,
                                         const std::filesystem::path& root = "/");
 

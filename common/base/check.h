@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// CHECK(condition) << context: aborts if the condition is false, which only a bug can cause. Active
-// in every build.
+// CHECK(condition) << context: aborts if the condition is false. A false condition means a bug in
+// the program. Active in every build.
 #pragma once
 
 #include <sstream>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clocks; a simulation replaces them (scheduler.h). Deadlines use the steady clock. Records and
-// files use wall time.
+// Clocks. A simulation replaces both clocks (scheduler.h). Deadlines use the steady clock. Records
+// and files use wall time.
 #pragma once
 
 #include <chrono>
@@ -31,7 +31,7 @@ inline int64_t WallTimeNs() {
 
 inline double WallTimeSeconds() { return static_cast<double>(WallTimeNs()) * 1e-9; }
 
-// "2026-01-31T12:00:00Z"
+// The present time as text: "2026-01-31T12:00:00Z".
 std::string UtcTimestamp();
 
 }  // namespace shoal

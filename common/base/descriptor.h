@@ -33,7 +33,7 @@ class Descriptor {
   }
 
  private:
-  int fd_ = -1;  // -1: none
+  int fd_ = -1;  // -1: no descriptor
 };
 
 }  // namespace shoal

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The only exception type. It is thrown only for failures that come from outside the program, at
-// start-up or at a boundary: files, configuration, DDS, child processes, malformed messages. Each
-// process catches it once (main_guard.h), prints one line on stderr and returns the exit code.
+// The only exception type. Shoal throws an Error only for failures with a cause outside the
+// program: files, configuration, DDS, child processes, malformed messages. The main function of
+// each process catches the Error (main_guard.h), prints one line on stderr and returns the exit
+// code.
 //
-// A bug fails a CHECK (check.h). Normal absence is a value (std::optional, an enum). The data path
-// does not throw.
+// A bug fails a CHECK (check.h). If a missing value is normal, functions return std::optional or an
+// enum. Code that handles records and batches does not throw.
 #pragma once
 
 #include <fmt/core.h>
@@ -15,9 +16,9 @@
 
 namespace shoal {
 
-// Exit codes of every program: 0 success, 1 run-time failure, 2 bad usage (arguments,
-// configuration), 3 a number that is not finite (simulation, weights, losses). After an exit with 2
-// or 3, the same command would fail again.
+// Exit codes of every program: 0 success, 1 run-time failure, 2 wrong usage (arguments,
+// configuration), 3 a number that is not finite (simulation, weights, losses). If a command ended
+// with 2 or 3, the same command would fail again.
 enum class ErrorKind { kRuntime = 1, kUsage = 2, kNonFinite = 3 };
 
 class Error : public std::runtime_error {

@@ -12,12 +12,13 @@ namespace shoal {
 
 enum class Holding {
   kAlone,       // excludes all other holders
-  kWithOthers,  // excludes a holder of kAlone
+  kWithOthers,  // excludes holders of kAlone
 };
 
-// Uses locks of the open file description (F_OFD_SETLK). These locks exclude two openings of the
-// file within one process, survive the closing of another descriptor of the file, and can be
-// queried without being taken. On a network file system with locks, they apply to all hosts.
+// Uses locks of the open file description (F_OFD_SETLK). Such a lock also excludes a second opening
+// of the file in the same process, stays when the process closes another descriptor of the file,
+// and can be queried without being taken. If a network file system supports locks, the lock applies
+// to all hosts.
 class FileLock {
  public:
   // Takes the lock, and creates the file if it does not exist (permissions follow the umask).
@@ -25,7 +26,7 @@ class FileLock {
   // be written or is not a regular file.
   static std::optional<FileLock> Take(const std::filesystem::path& file,
                                       Holding holding = Holding::kAlone);
-  // Tries to take the lock until the deadline.
+  // Tries to take the lock until `deadline` has passed since the call. Otherwise like Take above.
   static std::optional<FileLock> Take(const std::filesystem::path& file, Holding holding,
                                       std::chrono::milliseconds deadline);
 

@@ -14,21 +14,22 @@
 
 namespace shoal {
 
-// Opens a regular file with `flags` and O_CLOEXEC; O_CREAT creates the file with `mode`. Never
-// waits: if the path is a FIFO, a socket or a device, throws Error. Every file of a run is opened
-// by this function, or mapped by code that makes the same check.
+// Opens a regular file with `flags` and O_CLOEXEC; O_CREAT creates the file with `mode`. Throws
+// Error if the path is a FIFO, a socket or a device, so that opening never waits. Every file of a
+// run is opened by this function, or mapped by code that makes the same check.
 Descriptor OpenRegular(const std::filesystem::path& path, int flags, mode_t mode = 0666);
 
-// Reads a whole file. Throws Error naming the path and the system's reason. A pipe is read only if
-// its path lies below /dev or /proc (/dev/stdin, a shell's <(...)), because then the user named the
-// pipe; elsewhere a pipe is refused.
+// Reads a whole file. Throws Error naming the path and the system's reason. A pipe is accepted only
+// if its path is below /dev or /proc (/dev/stdin, a shell's <(...)), because then the user chose
+// the pipe.
 std::string ReadFile(const std::filesystem::path& path);
 
 // Writes `path`.tmp-PID, calls fsync, renames the file to `path`, and calls fsync for the folder. A
-// reader sees the old file or the new one, never a part of a file. Permissions follow the umask.
-// Throws Error; on failure, the temporary file is removed.
+// reader sees the old file or the new file, never a part of a file. Permissions follow the umask.
+// On failure, removes the temporary file and throws Error.
 void WriteFileAtomically(const std::filesystem::path& path, std::string_view content);
-// Does the same for keys and tokens: only the user can read the file (0600), whatever the umask.
+// Does the same for keys and tokens: only the user can read the file (0600). The umask has no
+// effect.
 void WriteFilePrivately(const std::filesystem::path& path, std::string_view content);
 // Writes `path`.new and renames it over `path`, without fsync: a busy disk does not delay the
 // caller, and a power failure may lose the file. Throws Error.
@@ -40,14 +41,17 @@ void WriteFileForOthers(const std::filesystem::path& path, std::string_view cont
 // allows. Throws Error.
 void OpenToOthers(const std::filesystem::path& path);
 
-// Stores the process's umask. Call it once, at the start, before there are threads.
+// Stores the process's umask. Call this function once, at the start of the process, before other
+// threads exist.
 void NoteUmask();
-// Sets the umask to 077: only the user can read the files and folders that the process creates from
-// now on, except files of WriteFileForOthers. Child processes inherit the umask. For secured runs.
+// Sets the umask to 077, for secured runs. Only the user can read the files and folders that the
+// process creates from now on, except files of WriteFileForOthers. Child processes inherit the
+// umask.
 void KeepFilesPrivate();
 
-// Checks, at the start of a command, that the command can write `path` after its long work. Throws
-// Error when the folder does not exist or is not writable, or `path` is a folder.
+// Checks whether the program can write `path`. Commands call this function before long work whose
+// result they write to `path`. Throws Error if the folder does not exist or is not writable, or if
+// `path` is a folder.
 void CheckWritable(const std::filesystem::path& path);
 
 // Calls fsync for a folder, so that a rename within the folder survives power loss. Throws Error.

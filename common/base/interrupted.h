@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Thrown when a stop signal (stop.h) ends a task before there is a result. GuardMain prints one
-// line, and the process ends by that signal.
+// Thrown when a stop signal (stop.h) ends a task before the task has a result. GuardMain prints one
+// line, and the process ends by this signal.
 #pragma once
 
 #include "common/base/error.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Limits the log lines of one kind, so that a foreign sender cannot fill the disk. The log takes
-// the first kLines lines of each kSpan. The next line reports the number of lines that were left
-// out.
+// Limits the log lines of one kind, so that a foreign sender cannot fill the disk. In each time
+// span kSpan, only the first kLines lines are logged. The first line after a gap reports the number
+// of lines that were left out.
 #pragma once
 
 #include <chrono>

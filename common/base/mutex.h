@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A mutex, a scoped lock and a condition variable with annotations for clang's -Wthread-safety. An
-// annotation at each member names the mutex that guards it, and the clang preset refuses to build a
-// use without the lock. The classes are thin wrappers, because the standard ones in Debian have no
-// annotations.
+// annotation of a member names the mutex that guards the member. A build with the clang preset
+// fails if code uses the member without the lock. These classes are thin wrappers around the
+// standard classes, which have no annotations in Debian.
 //
 // The attributes: https://clang.llvm.org/docs/ThreadSafetyAnalysis.html
 #pragma once
@@ -21,7 +21,8 @@
 
 // A member that may be read or written only while `mutex` is held.
 #define SHOAL_GUARDED_BY(mutex) SHOAL_THREAD_ATTRIBUTE(guarded_by(mutex))
-// A function to be called with, or without, these mutexes held.
+// REQUIRES: a function that must be called with these mutexes held. EXCLUDES: a function that must
+// be called with none of these mutexes held.
 #define SHOAL_REQUIRES(...) SHOAL_THREAD_ATTRIBUTE(requires_capability(__VA_ARGS__))
 #define SHOAL_EXCLUDES(...) SHOAL_THREAD_ATTRIBUTE(locks_excluded(__VA_ARGS__))
 
@@ -63,12 +64,11 @@ class SHOAL_THREAD_ATTRIBUTE(scoped_lockable) MutexLock {
   Mutex& mutex_;
 };
 
-// Wait in a loop that checks the condition, because a wait may end without a notification. (There
-// is no overload with a predicate: a predicate is a lambda, and the analysis does not carry locks
-// into lambdas.)
+// Wait in a loop that checks the condition, because a wait may end without a notification. There is
+// no overload with a predicate, because the analysis does not see in a lambda that a lock is held.
 class ConditionVariable {
  public:
-  // Releases the mutex while it waits. Returns false when the deadline has passed.
+  // Releases the mutex during the wait. Returns false if the deadline has passed.
   bool WaitUntil(Mutex& mutex, SteadyTime deadline) SHOAL_REQUIRES(mutex) {
     if (Scheduler* scheduler = Scheduler::Current()) {
       return scheduler->Wait(this, &mutex.held_, deadline);

@@ -8,7 +8,8 @@
 
 namespace shoal {
 
-// Least number of edits (insert, delete or replace one character) that turn `a` into `b`.
+// Smallest number of edits that turn `a` into `b`. One edit inserts, deletes or replaces one
+// character.
 int EditDistance(std::string_view a, std::string_view b);
 
 // The name nearest to `word`. Empty if more than half of `word` would have to change, because then

@@ -7,8 +7,8 @@
 
 namespace shoal {
 
-// Replaces line breaks and tabs by blanks, and other control characters by '?', because a terminal
-// would obey them.
+// Replaces line breaks and tabs by blanks. Replaces other control characters by '?', because a
+// terminal would execute them.
 inline std::string OneLine(std::string_view text) {
   std::string line(text);
   for (char& c : line) {
@@ -18,8 +18,8 @@ inline std::string OneLine(std::string_view text) {
   return line;
 }
 
-// The first `most` bytes, without a partial UTF-8 character, and a note of the number of bytes left
-// out. Shorter texts are unchanged.
+// Returns the first `most` bytes, without a partial UTF-8 character, and "... (N more bytes)".
+// Returns shorter texts unchanged.
 inline std::string Shortened(std::string_view text, size_t most) {
   if (text.size() <= most) return std::string(text);
   while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xc0) == 0x80) --most;

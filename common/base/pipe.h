@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pipe whose ends are closed by their destructors and when the process executes another program.
+// A pipe. The destructor closes both ends. Other programs that the process executes do not inherit
+// the ends.
 #pragma once
 
 #include <fcntl.h>
@@ -15,7 +16,7 @@
 namespace shoal {
 
 struct Pipe {
-  // Throws Error when the system cannot create a pipe.
+  // Throws Error if the system cannot create a pipe.
   Pipe() {
     std::array<int, 2> ends{};
     if (pipe2(ends.data(), O_CLOEXEC) != 0) throw RuntimeError("pipe: {}", std::strerror(errno));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random streams, each with a key. The key depends on the stream's purpose and not on the process
-// that draws from the stream, so results do not depend on the distribution of environments over
-// processes.
+// Random streams. Each stream has a key (seed of the stream). The key depends on the purpose of the
+// stream and not on the process that draws from the stream. Results therefore do not depend on the
+// distribution of environments over processes.
 //
 // Generator: xoshiro256++ (Blackman and Vigna 2019, arXiv:1805.01407), seeded by splitmix64.
 #pragma once
@@ -29,6 +29,7 @@ uint64_t HashWords(std::initializer_list<uint64_t> words);
 // FNV-1a of bytes, finished by one splitmix64 round.
 uint64_t HashBytes(const void* data, uint64_t size);
 
+// Key of one stream of a role. `a` and `b` distinguish the streams of the role.
 inline uint64_t StreamKey(uint64_t seed, StreamRole role, uint64_t a = 0, uint64_t b = 0) {
   return HashWords({seed, static_cast<uint64_t>(role), a, b});
 }
@@ -45,7 +46,7 @@ class Random {
   double Uniform(double low, double high) { return low + (high - low) * Uniform(); }
   // Uniform in {0, ..., n-1}, n > 0; unbiased (Lemire's rejection).
   uint64_t Below(uint64_t n);
-  // Standard normal by Box-Muller. Each call draws two uniform numbers and keeps nothing.
+  // Standard normal by Box-Muller. Each call draws two uniform numbers and stores no second result.
   double Normal();
   // Advances the stream as Normal does, at a tenth of its cost.
   void SkipNormal() {

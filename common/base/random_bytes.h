@@ -7,7 +7,7 @@
 
 namespace shoal {
 
-// Throws Error when the kernel has none. At most 256 bytes.
+// Fills at most 256 bytes. Throws Error if the kernel provides no random bytes.
 void FillWithRandomBytes(std::span<std::byte> bytes);
 
 }  // namespace shoal

@@ -25,17 +25,18 @@ class Scheduler {
   // Lets other threads run while `*held` is true, then sets `*held`.
   virtual void Lock(bool* held) = 0;
   virtual void Unlock(bool* held) = 0;
-  // Waits for a Notify of `condition`; `*held` is false meanwhile. Returns false when the deadline
-  // came first.
+  // Waits for a Notify of `condition`. During the wait, `*held` is false. Returns false if the
+  // deadline passed before the Notify.
   virtual bool Wait(const void* condition, bool* held, SteadyTime deadline) = 0;
   virtual void Notify(const void* condition, bool all) = 0;
 
-  // Starts a thread in the group of the calling one; the result names it in Join.
+  // Starts a thread in the group of the calling thread. Returns the number of the new thread, for
+  // Ended and Join.
   virtual uint64_t Start(std::function<void()> body) = 0;
   virtual bool Ended(uint64_t thread) = 0;
   virtual void Join(uint64_t thread) = 0;
 
-  // Tell the scheduler that the calling thread's process has opened, or closed, the descriptor
+  // Called after the calling thread's process has opened, or before it closes, the descriptor
   // (common/base/descriptor.h). A simulated kill closes the descriptors of the killed process.
   virtual void OnOpened(int descriptor) = 0;
   virtual void OnClosed(int descriptor) = 0;

@@ -11,7 +11,7 @@ namespace shoal {
 // Whether `path` is a file that this process may execute.
 bool IsExecutable(const std::filesystem::path& path);
 
-// The first executable file of this name in the folders of PATH; empty if there is none.
+// The first executable file of this name in the folders of PATH; empty if there is no such file.
 std::optional<std::filesystem::path> FindOnSearchPath(const std::string& program);
 
 }  // namespace shoal

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory that processes of one user on one host share. The memory has no name in any file system.
-// The kernel frees the memory when its maker and all processes that map the memory have ended, for
-// whatever reason. It cannot collide with memory of another run, and the size of /dev/shm does not
-// matter.
+// Memory that processes of one user on one host share. The memory has no name in any file system,
+// so it cannot collide with memory of another run, and the size of /dev/shm does not matter. The
+// kernel frees the memory after the process that made it and all processes that map it have ended,
+// for whatever reason.
 //
-// While the maker lives, a reader opens the memory through /proc by the maker's process number and
-// descriptor. A mapping stays valid afterwards. The kernel admits only the maker's user and root.
-// The size is sealed, so that no access can fail later.
+// A reader opens the memory through /proc, by the process number and the descriptor of the process
+// that made it. This process must be alive at that time; a mapping stays valid afterwards. The
+// kernel admits only the same user and root. The size of the memory is sealed, so that no access
+// can fail later.
 #pragma once
 
 #include <cstdint>
@@ -21,18 +22,20 @@ namespace shoal {
 
 class SharedMemory {
  public:
-  // Makes memory of `bytes` zeros, all allocated at once. `label` appears in /proc/PID/maps. Throws
-  // Error with the reason: a limit on the size of files, no memory, a kernel without memfd_create.
-  // If the memory limit of a control group is too small, the kernel kills the process; the caller
-  // must check the limit before.
+  // Makes memory of `bytes` zeros and allocates all of the memory now. `label` appears in
+  // /proc/PID/maps. Throws Error with the reason: a limit on the size of files, too little memory,
+  // or a kernel without memfd_create. If the memory limit of a control group is too small, the
+  // kernel kills the process; the caller must check this limit before the call.
   static SharedMemory Make(const std::string& label, uint64_t bytes);
-  // Makes memory with the concatenated `pieces`, sealed against changes. Other processes can Open
-  // the memory while the descriptor is open. The pieces are written without a mapping, at about
-  // half the cost of Make and a copy. Throws Error as Make does.
+  // Makes memory that contains the concatenated `pieces` and is sealed against changes. Other
+  // processes can Open the memory while the returned descriptor is open. This function writes the
+  // pieces without a mapping, which costs about half as much as Make and a copy. Throws Error like
+  // Make.
   static Descriptor MakeOf(const std::string& label,
                            std::initializer_list<std::string_view> pieces);
-  // Maps, for reading, the memory of a process on this host. Throws Error if there is no such
-  // memory, the caller may not read it, it was not made by this class, or it has another size.
+  // Maps the memory of a process on this host for reading. Throws Error if there is no such memory,
+  // if the caller may not read the memory, or if the memory was not made by this class or does not
+  // have `bytes` bytes.
   static SharedMemory Open(int32_t pid, int32_t descriptor, uint64_t bytes);
 
   SharedMemory(SharedMemory&& other) noexcept

@@ -28,7 +28,7 @@ class ThreadGroup {
   ThreadGroup(const ThreadGroup&) = delete;
   ThreadGroup& operator=(const ThreadGroup&) = delete;
 
-  // Requests that the group stops, as a stop signal does for a process. Any thread.
+  // Requests that the group stops, like a stop signal for a process. Any thread may call it.
   void RequestStop() { stop_requests_.fetch_add(1, std::memory_order_relaxed); }
   int StopRequests() const { return stop_requests_.load(std::memory_order_relaxed); }
   log::File& log() { return *log_; }
@@ -38,7 +38,8 @@ class ThreadGroup {
   // The group of the calling thread; nullptr if it has none.
   static ThreadGroup* Current();
 
-  // Sets Current() for a scope, without membership. For a scheduler of simulated threads.
+  // Sets Current() for a scope without making the thread a member. For a scheduler of simulated
+  // threads.
   class Bound {
    public:
     explicit Bound(ThreadGroup* group);
@@ -50,7 +51,7 @@ class ThreadGroup {
     ThreadGroup* const former_;
   };
 
-  // Puts the calling thread into a group (nullptr: into none) for a scope.
+  // Makes the calling thread a member of a group for a scope; nullptr: of no group.
   class Member {
    public:
     explicit Member(ThreadGroup* group);

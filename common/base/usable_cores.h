@@ -16,13 +16,15 @@ struct CoreLimits {
 // Reads the cgroups below `root`, which is "/" except in tests.
 CoreLimits ReadCoreLimits(const std::filesystem::path& root = "/");
 
-// The smaller of the affinity and the quota (rounded up). At least 1.
+// The smaller of affinity and quota (rounded up). At least 1.
 int UsableCores(const CoreLimits& limits);
+// The same for the limits of this process.
 int UsableCores();
 
-// Why the process may not use all online cores, or "" if it may: "1 of 8 by its CPU affinity mask
-// (set by taskset, a scheduler or the program that started it)". Also names OpenMP variables that
-// this program ignores, because they may have bound the program that started it.
+// Why the process may not use all online cores; "" if the process may use all of them. Example: "1
+// of 8 by its CPU affinity mask (set by taskset, a scheduler or the program that started it)". The
+// text also names the OpenMP variables that this program ignores, because these variables may have
+// bound the parent process to cores.
 std::string DescribeLimits(const CoreLimits& limits);
 
 }  // namespace shoal

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ends the process when an operation that cannot be interrupted takes too long. A hang then becomes
-// a line in the log and an exit that the supervisor detects.
+// Ends the process if an operation that cannot be interrupted takes too long. The process then
+// writes a line to the log and exits instead of hanging, and the supervisor detects the exit.
 #pragma once
 
 #include <chrono>

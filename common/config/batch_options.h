@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options of batches that learner and replay both derive from the configuration of a run. Equal
-// options on both sides make their batches agree.
+// Options of batches. The learner and the replay each derive these options from the configuration
+// of the run, so that they use the same format.
 #pragma once
 
 #include "common/config/run_config.h"
@@ -8,7 +8,7 @@
 
 namespace shoal {
 
-// Throws Error as PrivilegedBlocksOf does.
+// The two functions throw the same errors as PrivilegedBlocksOf.
 BatchOptions BatchOptionsOf(const RunConfig& run);
 BatchSchema BatchSchemaOf(const RunConfig& run);
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The resolved configuration of a run: every key with its default. One struct per section; a key is
-// its member's dotted path ("learner.batch"). config_keys.cpp lists every key;
-// docs/configuration.md is made from that list.
+// The resolved configuration of a run. The initial values of the members are the defaults. Each
+// section of keys is one struct. The name of a key is the dotted path of its member
+// ("learner.batch"). config_keys.cpp lists all keys; docs/configuration.md is generated from this
+// list.
 #pragma once
 
 #include <array>
@@ -15,8 +16,8 @@
 
 namespace shoal {
 
-// A user-defined camera, which looks at the point `lookat` from `distance`. Azimuth 0 looks along
-// +x, 90 along +y; a negative elevation looks down.
+// A user-defined camera, which looks at the point `lookat` from `distance`. With azimuth 0 the
+// camera looks along +x, with azimuth 90 along +y, and with a negative elevation down.
 struct CustomCamera {
   std::array<double, 3> lookat{};  // m
   double distance = 1;             // m
@@ -27,7 +28,7 @@ struct CustomCamera {
   bool operator==(const CustomCamera&) const = default;
 };
 
-// Some of a task's blocks: all, none, or those named.
+// Selection of a task's blocks: all blocks, no block, or the named blocks.
 struct StateBlocks {
   bool all = false;
   std::vector<std::string> names{};  // the named blocks, if not `all`
@@ -47,7 +48,7 @@ struct ObservationConfig {
   std::string goal_mode = "none";  // none | desired | both: goal vectors among the blocks
   StateBlocks proprioception = false;
   std::string quality = "fast";                        // fast | native | reference
-  std::map<std::string, CustomCamera> custom_cameras;  // by name, beside the task's own
+  std::map<std::string, CustomCamera> custom_cameras;  // by name, in addition to the task's cameras
 };
 
 // Named arguments of a user's function, as a JSON object.
@@ -55,7 +56,7 @@ struct KeywordArguments {
   std::string json = "{}";
 };
 
-// An environment that is not one of Shoal's worlds, run by Python in the actors.
+// An environment that is not one of Shoal's worlds.
 struct EnvConfig {
   std::string id;            // "Pendulum-v1", "module:Name", "/folder/file.py:Name"; empty = none
   KeywordArguments kwargs;   // arguments of the environment's constructor
@@ -66,7 +67,8 @@ struct EnvConfig {
 
 // Physical quantities drawn anew for every episode, uniformly in [low, high].
 struct RandomizationConfig {
-  std::map<std::string, std::array<double, 2>> body_mass;  // body -> kg; empty = as modelled
+  // Name of a body -> [low, high] in kg; empty = masses of the model.
+  std::map<std::string, std::array<double, 2>> body_mass;
 };
 
 struct ReplayConfig {
@@ -76,41 +78,42 @@ struct ReplayConfig {
   Schedule samples_per_insert = Schedule::Constant(64);
   double band = 0;                 // width of the limiter's band in samples; 0 = computed
   std::string storage = "file";    // file | memory
-  bool keep = false;               // the file stays when the run has finished
-  int shift_pad = 4;               // DrQ shift in pixels, 0 = none
+  bool keep = false;               // keep the file after the run has finished
+  int shift_pad = 4;               // DrQ shift in pixels; 0 = no shift
   int copies = 1;                  // batch elements per drawn transition, each shifted anew
-  int target_shifts = 0;           // K: copies with their own shift of the next frame; 0 = all
-  int critic_shifts = 0;           // M: copies with their own shift of the frame; 0 = all
+  int target_shifts = 0;           // number of copies with an own shift of the next frame; 0 = all
+  int critic_shifts = 0;           // number of copies with an own shift of the frame; 0 = all
   int n_step = 1;                  // steps whose rewards are summed before the next value
   std::string hindsight = "none";  // none | future | final | episode: source of hindsight goals
-  int hindsight_goals = 4;         // N: a share N / (N + 1) of the samples is relabelled
+  int hindsight_goals = 4;         // N; a share N / (N + 1) of the samples is relabelled
   double movement_share = 0;       // share of samples drawn by remaining motion of achieved goals
   std::string movement = "path";   // path | displacement: measure of the remaining motion
-  int window_chunks = 4;           // chunks an actor may have unacknowledged
-  int threads = 0;                 // threads that copy a batch's frames; 0 = as the rate requires
+  int window_chunks = 4;           // most unacknowledged chunks of an actor
+  int threads = 0;                 // threads that copy a batch's frames; 0 = chosen from the load
 };
 
 struct LearnerConfig {
   std::string algorithm = "sac";  // common/config/algorithm_kind.h
   int batch = 128;
   std::string precision = "auto";  // auto | f32 | bf16
-  int threads = 0;                 // 0 = chosen: common/config/learner_threads.h
+  int threads = 0;                 // 0 = chosen as in common/config/learner_threads.h
   double learning_rate = 5e-4;
   double actor_learning_rate = 0, critic_learning_rate = 0;  // 0 = learning_rate
-  Schedule rate_factor = Schedule::Constant(1);              // on all learning rates
-  double max_grad_norm = 0;  // for the actor's gradients and for the critic's; 0 = not clipped
+  Schedule rate_factor = Schedule::Constant(1);              // multiplies all learning rates
+  double max_grad_norm = 0;  // limit for actor gradients and for critic gradients; 0 = no limit
   double discount = 0.9;
   double reward_scale = 10;
-  double tau = 0.01;            // target heads: target += tau * (online - target)
-  double average_rate = 0.005;  // evaluated policy: average += rate * (policy - average); 1 = none
-  int actor_period = 2;         // updates per actor and temperature update
+  double tau = 0.01;  // target heads: target += tau * (online - target)
+  // Evaluated policy: average += average_rate * (policy - average); 1 = no averaging.
+  double average_rate = 0.005;
+  int actor_period = 2;  // actor and temperature are trained in every actor_period-th update
   int target_period = 1;
   double mean_penalty = 0;  // deterministic policy: weight of its squared outputs before tanh
-  bool normalise_vectors = false;  // observed vectors, by running mean and deviation
-  double variance_floor = 0;       // least variance that normalise_vectors uses
-  bool bounded_targets = false;    // targets clipped to the range that rewards of -1 and 0 allow
-  int weights_period = 20;         // updates between weights broadcasts
-  int request_credits = 3;         // batches asked for ahead
+  bool normalise_vectors = false;  // scale observed vectors by running mean and deviation
+  double variance_floor = 0;       // smallest variance that normalise_vectors uses
+  bool bounded_targets = false;    // clip targets to the range that rewards of -1 and 0 allow
+  int weights_period = 20;         // updates between broadcasts of the weights
+  int request_credits = 3;         // batches that the learner requests in advance
   int checkpoint_period = 2'000;   // updates between checkpoints
 };
 
@@ -118,7 +121,7 @@ struct LearnerConfig {
 struct SacConfig {
   std::string temperature = "auto";  // auto | fixed
   double initial_temperature = 0.1;
-  double min_temperature = 0;            // bound of an automatic temperature
+  double min_temperature = 0;            // lower bound of an automatic temperature
   double temperature_learning_rate = 0;  // 0 = learner.learning_rate
   double target_entropy = 0;             // 0 = target_entropy_per_action * (action size)
   double target_entropy_per_action = -1;
@@ -129,53 +132,53 @@ struct SacConfig {
 
 // On-policy learning: each update uses one rollout of every environment and then discards it.
 struct PpoConfig {
-  int rollout_steps = 1024;                 // T, of each environment, by one version of the weights
+  int rollout_steps = 1024;                 // T steps of each environment in one rollout
   int epochs = 10;                          // passes over a rollout in one update
-  Schedule clip = Schedule::Constant(0.2);  // of the probability ratio, around 1
-  double value_clip = 0;                    // bound on a value's change; 0 = none
-  double gae_lambda = 0.95;                 // weight of later steps' advantages
-  double entropy_weight = 0;                // of the policy's entropy in the loss
-  double value_weight = 0.5;                // of the squared value error in the loss
-  double target_kl = 0;                     // an update ends early beyond 1.5 * this; 0 = never
-  bool normalise_advantages = true;         // in each minibatch
-  bool normalise_rewards = false;           // by the running deviation of returns
-  std::string networks = "separate";        // separate | shared: of policy and value
-  double initial_log_std = 0;               // of the policy, before the first update
-  int versions_ahead = 0;                   // rollouts begun before the awaited weights
-  double rollout_deadline = 30;             // s, to wait for late rollouts
+  Schedule clip = Schedule::Constant(0.2);  // ratios are clipped to [1 - clip, 1 + clip]
+  double value_clip = 0;                    // limit for the change of a value; 0 = no limit
+  double gae_lambda = 0.95;                 // weight of the advantages of later steps
+  double entropy_weight = 0;                // weight of the policy's entropy in the loss
+  double value_weight = 0.5;                // weight of the squared value error in the loss
+  double target_kl = 0;              // an update ends early if the KL exceeds 1.5 * this; 0 = never
+  bool normalise_advantages = true;  // normalise advantages in each minibatch
+  bool normalise_rewards = false;    // scale rewards by the running deviation of returns
+  std::string networks = "separate";  // separate | shared: networks of policy and value
+  double initial_log_std = 0;         // log deviation of the policy before the first update
+  int versions_ahead = 0;             // rollouts that begin before their weights arrive
+  double rollout_deadline = 30;       // s; how long the learner waits for late rollouts
 };
 
-// Noise on a target's action, in units of the action's range of -1 to 1; the source's values
-// (Fujimoto et al. 2018, arXiv:1802.09477, table 3).
+// Noise on a target's action. Actions are in [-1, 1]. The defaults are the values of Fujimoto et
+// al. 2018, arXiv:1802.09477, table 3.
 struct Td3Config {
-  double target_noise = 0.2;       // standard deviation; 0 = none
-  double target_noise_clip = 0.5;  // bound of the noise
+  double target_noise = 0.2;       // standard deviation; 0 = no noise
+  double target_noise_clip = 0.5;  // largest absolute value of the noise
 };
 
 // Noise that training actors add to their policy's actions (actor/acting/exploration.h).
 struct ExplorationConfig {
   std::string kind = "auto";                 // auto | squashed_gaussian | gaussian | ou
   Schedule sigma = Schedule::Constant(0.1);  // deviation of gaussian and ou noise
-  double theta = 0.15;                       // ou: pull towards zero, per unit of time
+  double theta = 0.15;                       // ou: rate of return towards zero, per unit of time
   double dt = 0.01;                          // ou: units of time per env step
-  int64_t random_steps = 0;                  // env steps of the run by uniform random actions
+  int64_t random_steps = 0;                  // first env steps of the run, with random actions
   double spread = 1;  // each actor scales the noise by its own factor in 1 / spread .. spread
 };
 
 struct NetworkConfig {
-  std::string encoder = "compact";  // for pixels: a kind of common/nn/encoders/encoder_kind.h
-  std::string encoder_weights;      // safetensors file that the encoder starts from; empty = none
-  std::string encoders = "shared";  // shared | separate: of actor and critic
-  bool target_encoder = false;      // the target critic has its own, which follows the critic's
+  std::string encoder = "compact";  // kind of encoder (common/nn/encoders/encoder_kind.h)
+  std::string encoder_weights;      // safetensors file with initial weights; empty = random weights
+  std::string encoders = "shared";  // shared | separate: encoders of actor and critic
+  bool target_encoder = false;      // whether the target critic has a target encoder
   // Keys of the compact encoder only; 0 and [] = the encoder's own values.
-  int pool = 0;  // average pooling of the input, 1 = none
+  int pool = 0;  // average pooling of the input; 1 = no pooling
   std::vector<int> filters, strides;
   std::string trunk = "auto";                 // auto = the encoder's own | tanh | relu
   int features = 0;                           // outputs of the trunk; 0 = the encoder's own
   std::vector<int> hidden{256, 256};          // MLPs of actor and critics
   bool layer_norm = true;                     // after each hidden layer of the MLPs
-  std::string activation = "relu";            // relu | tanh: of those layers
-  std::string log_std = "smooth";             // smooth | clamped: how the deviation is bounded
+  std::string activation = "relu";            // relu | tanh: activation of the hidden layers
+  std::string log_std = "smooth";             // smooth | clamped: method that bounds the deviation
   std::string initialisation = "orthogonal";  // orthogonal | pytorch
 };
 
@@ -183,23 +186,25 @@ struct EvalConfig {
   int episodes = 50;
   int64_t interval = 2'500;  // env steps between evaluations
   int final_episodes = 100;
-  int envs = 4;  // environments stepped together by the evaluation actor
+  int envs = 4;  // environments that the evaluation actor steps together
 };
 
 struct StopConfig {
-  double success = 0.98;  // stop at this pooled rate of the newest `evaluations`; > 1 = never
+  // The run stops if the newest `evaluations` evaluations together have at least this success rate;
+  // > 1 = never.
+  double success = 0.98;
   int evaluations = 2;
-  int without_actors = 300;  // s without a working training actor, after which the run ends
+  int without_actors = 300;  // s; the run ends after this time without a working training actor
 };
 
 struct TransportConfig {
   std::string interface = "lo";  // name or address; auto = the interface towards the servers
-  int fragment_bytes = 65'000;   // use 8000 if peers are behind MTU 1500
-  int chunk_records = 24;        // most records per chunk; fewer if they exceed 1 MiB
-  int flush_ms = 100;            // a partial chunk is sent after this long
+  int fragment_bytes = 65'000;   // use 8000 if the network's MTU is 1500
+  int chunk_records = 24;        // most records per chunk; fewer if 24 records exceed 1 MiB
+  int flush_ms = 100;            // a partial chunk is sent after this time
 };
 
-inline constexpr uint32_t kMostActors = 1024;  // of a run, on all its hosts
+inline constexpr uint32_t kMostActors = 1024;  // limit for a run, on all its hosts together
 
 struct Config {
   std::string preset;
@@ -207,18 +212,19 @@ struct Config {
   std::string run_name;  // empty = PRESET-sSEED
   std::string run_dir = "runs";
   std::string task = "FetchReachDense";
-  std::string task_library;       // shared object with the user's tasks; empty = none
+  std::string task_library;       // shared object with the user's tasks; empty = no such tasks
   double distance_threshold = 0;  // for success and sparse reward, m; 0 = the task's own
   int64_t env_steps = 100'000;    // budget
-  int actors = 0;                 // 0 = one per core the learner leaves, at least 1
+  int actors = 0;                 // 0 = one for each core that the learner does not use, at least 1
   int envs_per_actor = 4;
   bool lockstep = false;
-  int lockstep_steps = 8;           // vector steps between weights in lockstep
-  std::string model;                // path of another MJCF file for the task; empty = our own
+  int lockstep_steps = 8;           // lockstep: vector steps between two changes of the weights
+  std::string model;                // path of another MJCF file for the task; empty = Shoal's file
   std::string physics = "mujoco2";  // mujoco2 | mujoco3: MuJoCo version of the Fetch weld
   int action_repeat = 0;            // control steps per env step; 0 = the task's own
-  bool end_on_success = false;      // an episode ends, terminated, with the step that succeeds
-  double max_faulty_share = 0.05;   // share of an actor's last 200 episodes; more end the run
+  bool end_on_success = false;      // the step that reaches the goal terminates the episode
+  // The run ends if the share of faulty episodes among an actor's last 200 episodes is higher.
+  double max_faulty_share = 0.05;
   EnvConfig env;
   ObservationConfig observation;
   RandomizationConfig randomization;

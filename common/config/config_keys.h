@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one table of configuration keys. Parsing, printing, --set and the documentation all use this
-// table, so all of them have the same keys. Internal to common/config.
+// The table of configuration keys. Parsing, printing, --set and the documentation use this one
+// table, so they all have the same keys. Internal to common/config.
 #pragma once
 
 #include <array>
@@ -22,12 +22,12 @@ using Slot =
                  std::vector<std::string>*, std::map<std::string, std::array<double, 2>>*,
                  std::map<std::string, CustomCamera>*, Schedule*, KeywordArguments*>;
 
-// Bounds of an integer, or of each element of a list of integers; both ends included.
+// Allowed values of an integer, or of each element of a list of integers: low <= value <= high.
 struct IntegerRange {
   int64_t low, high;
 };
-// Bounds of a real number, of both ends of a schedule or of each interval of a map. Each bound is
-// included unless it is open.
+// Allowed values of a real number, of the start and the end of a schedule, or of the bounds of each
+// interval in a map. `low` and `high` are themselves allowed unless low_open or high_open is set.
 struct RealRange {
   double low, high;
   bool low_open = false, high_open = false;
@@ -35,8 +35,8 @@ struct RealRange {
 struct Choices {
   std::vector<std::string_view> words;
 };
-// Longest file name of a key. File systems allow 255 bytes; the names of files beside a run's
-// folder append a suffix.
+// Limit for the value of a key that is a file name. File systems allow 255 bytes, but the names of
+// some files consist of the name of the run's folder and a suffix.
 inline constexpr size_t kLongestFileName = 200;
 // A text that is usable as a file name: letters, digits, '.', '_' and '-', not starting with '.' or
 // '-'. May be empty if `optional`.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a run's actors explore.
+// Kind of exploration of a run's actors.
 #pragma once
 
 #include <string_view>
@@ -19,7 +19,8 @@ bool LearnsDeviation(const Config& config);
 // policy explores by its own Gaussian, a deterministic policy by Gaussian noise.
 ExplorationKind ExplorationKindOf(const Config& config);
 
-// The word for exploration.kind; "policy" for kPolicy, which no key names.
+// The value of the key exploration.kind that selects `kind`. "policy" for kPolicy, which the key
+// cannot select.
 std::string_view NameOf(ExplorationKind kind);
 
 }  // namespace shoal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each configuration key in words, for tables, manuals and completions.
+// Description of each configuration key as text, for tables, manuals and completions.
 #pragma once
 
 #include <string>

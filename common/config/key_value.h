@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A key's value from JSON. Internal to common/config.
+// Converts JSON to a key's value. Internal to common/config.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

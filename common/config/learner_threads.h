@@ -17,12 +17,12 @@ namespace shoal {
 // - Off policy without pixels: 1, because updates are too short for threads to wait for each other.
 int LearnerThreads(const Config& config, int cores);
 
-// Largest useful number of threads: each has at least 8 rows of a batch, and no transition is
-// divided.
+// Largest useful number of threads. Each thread must have at least 8 rows of a batch, and all
+// copies of a transition must belong to one thread.
 int MostThreads(const Config& config);
 
-// Throws Error (kUsage) unless learner.batch has at least one transition, with its replay.copies,
-// for each replica.
+// Throws Error (kUsage) unless learner.batch has at least one transition, with all its copies
+// (replay.copies), for each replica.
 void CheckReplicas(const Config& config, int replicas);
 
 }  // namespace shoal

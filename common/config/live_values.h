@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values of the keys that can change during a run (launch/run/live_settings.h), as a process uses
-// them: those of the run's configuration, replaced by the changes that the coordinator has sent.
+// Current values of the keys that can change during a run (launch/run/live_settings.h). A value is
+// that of the run's configuration, unless the coordinator has sent a change.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +15,15 @@ struct LiveValues {
   uint64_t env_steps = 0;  // the budget
   int actors = 0;
   uint64_t weights_period = 0, eval_interval = 0;
-  Schedule samples_per_insert;         // a change is a number, which replaces the schedule
-  std::optional<int> learner_threads;  // only if changed: the learner resolves the configured 0
+  Schedule samples_per_insert;  // a change is a number, which replaces the schedule
+  // Empty unless changed, because only the learner can resolve the value 0 of a configuration.
+  std::optional<int> learner_threads;
 
   bool operator==(const LiveValues&) const = default;
 };
 
-// The values of a run now. A foreign program on an open network may send changes out of a key's
-// range; such changes are ignored or replaced by the nearest valid value.
+// The present values of a run. A foreign program on an open network may send values outside of a
+// key's range. Such a value is ignored or replaced by the nearest valid value.
 LiveValues LiveValuesOf(const Config& config, const ControlState& control);
 
 }  // namespace shoal

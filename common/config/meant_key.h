@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Finds keys by the names that other programs use (Stable-Baselines3, rl-zoo3, CleanRL, DrQ-v2).
-// Options of `shoal train`, --set and the errors for unknown keys use the same table.
+// `shoal train` uses this table for its options, for --set and in errors for unknown keys.
 #pragma once
 
 #include <string>
@@ -11,7 +11,8 @@ namespace shoal {
 struct MeantKey {
   std::string key{};   // path of the key; empty if the word means no single key
   std::string note{};  // advice, or a difference in meaning; a part of a sentence, may be empty
-  // The key has the same meaning and unit as the word, so that the value can be used unchanged.
+  // Whether the key has the same meaning and unit as the word, so that the value can be used
+  // unchanged.
   bool same = false;
 };
 

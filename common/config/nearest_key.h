@@ -7,9 +7,9 @@
 
 namespace shoal::internal {
 
-// The known key or section nearest to `path`: by its whole path, or by its last word when `path`
-// has no section ("batch" -> "learner.batch"). Empty if more than half of `path` would have to
-// change, because then `path` is another word rather than a misspelt key.
+// The known key or section that is nearest to `path`. Compares whole paths or, if `path` has no
+// section, the last words of paths ("batch" -> "learner.batch"). Empty if more than half of `path`
+// would have to change, because then `path` is another word rather than a misspelt key.
 std::string NearestKey(std::string_view path);
 
 }  // namespace shoal::internal

@@ -8,9 +8,9 @@ namespace shoal {
 
 bool LearnsOnPolicy(const Config& config);
 
-// Checks the keys against the run's kind of learning. Throws Error (kUsage) if a key that this kind
-// does not use is not at its default (the error names the key and a valid choice), or if no update
-// is possible from the configured rollout.
+// Checks the keys against the run's kind of learning (on policy or off policy). Throws Error
+// (kUsage) if a key is set that this kind of learning does not use; the error names the key and a
+// valid choice. Also throws if the configured rollout is too small for an update.
 void ValidateOnPolicy(const Config& config);
 
 }  // namespace shoal

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Privileged inputs: blocks of the record that learning uses but the policy does not observe.
 //
-//   sac.critic_blocks   an asymmetric critic sees them in place of the pixels (Eq. 26 of
-//                           docs/algorithm.md)
+//   sac.critic_blocks   inputs of an asymmetric critic, in place of the pixels (Eq. 26 of
+//                       docs/algorithm.md)
 //   sac.aux             labels of the auxiliary loss (Eq. 27)
 //
 // Source: Pinto et al. 2018, "Asymmetric actor critic for image-based robot learning",
@@ -17,17 +17,18 @@
 
 namespace shoal {
 
-// A label of the auxiliary loss: a block, or the difference of two of equal size.
+// A label of the auxiliary loss: a block, or the difference of two blocks of equal size.
 struct AuxLabel {
   std::string block;
-  std::string minus;  // block that is subtracted; empty = none
+  std::string minus;  // block that is subtracted; empty = no subtraction
   int size = 0;
 };
 
 struct PrivilegedBlocks {
   std::vector<std::string> critic;  // blocks of sac.critic_blocks that the policy does not observe
   std::vector<AuxLabel> labels;     // labels of sac.aux
-  // The blocks of both, in record order, each once. Batches carry them (BatchOptions::privileged).
+  // All blocks of `critic` and `labels`, in record order, without duplicates. Batches contain these
+  // blocks (BatchOptions::privileged).
   std::vector<std::string> all;
 };
 
@@ -35,7 +36,7 @@ struct PrivilegedBlocks {
 // not fit; the error names the key, the block and the existing blocks. Also throws if the policy
 // observes all named critic blocks.
 PrivilegedBlocks PrivilegedBlocksOf(const Config& config, const ObservationSpec& spec);
-// P: number of floats of all privileged blocks. Throws the same errors.
+// P: number of floats of all privileged blocks. Throws the same errors as PrivilegedBlocksOf.
 int PrivilegedSize(const Config& config, const ObservationSpec& spec);
 
 }  // namespace shoal

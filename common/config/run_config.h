@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Description of a run: every key, and the spec of its observations. run_files.h writes and reads
-// it.
+// Description of a run: every key, and the spec of its observations. run_files.h has the functions
+// that write and read the description.
 #pragma once
 
 #include "common/config/config.h"

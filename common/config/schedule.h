@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A number that may change during a run. It is constant, or linear from `start` at 0 env steps of
-// the run to `end` at `env_steps`, and equal to `end` afterwards.
+// A number that may change during a run. A schedule is constant, or linear from `start` at 0 env
+// steps of the run to `end` at `env_steps` and equal to `end` afterwards.
 //
-// A configuration spells it as a JSON number or as the text "linear(START,END,ENV_STEPS)".
+// In a configuration, a schedule is a JSON number or the text "linear(START,END,ENV_STEPS)".
 #pragma once
 
 #include <algorithm>
@@ -20,11 +20,11 @@ struct Schedule {
   static Schedule Constant(double value) { return {value, value, 0}; }
   bool constant() const { return env_steps == 0; }
   double At(uint64_t run_env_steps) const;
-  // The least and the largest value it ever has.
+  // The smallest and the largest value of the schedule.
   double Least() const { return std::min(start, end); }
   double Most() const { return std::max(start, end); }
 
-  // Mean over the env steps from `from` to `to` >= `from`; At(from) if both are equal:
+  // Mean over the env steps from `from` to `to` >= `from`; At(from) if `from` = `to`:
   //
   //   mean = integral of At(x) dx from `from` to `to`  /  (to - from)
   //        = ((t - f) (At(f) + At(t)) / 2  +  (to - from - (t - f)) end) / (to - from)
@@ -41,8 +41,8 @@ struct Schedule {
   bool operator==(const Schedule&) const = default;
 };
 
-// Numbers in JSON's spelling, blanks only behind commas, 1 <= ENV_STEPS <= 10^12; nothing for any
-// other text.
+// Accepts numbers in JSON's spelling, blanks only after commas, and 1 <= ENV_STEPS <= 10^12.
+// Returns empty for any other text.
 std::optional<Schedule> ParseSchedule(std::string_view text);
 // Inverse of ParseSchedule. CHECKs that the schedule is not constant.
 std::string ScheduleText(const Schedule& schedule);

@@ -3,7 +3,7 @@
 //
 // The search uses the first of these folders that has the file:
 //   PROJECT/KIND                  the working folder, if it is a user's project (shoal new)
-//   PROGRAM/KIND                  beside the program: a copy of some files without installation
+//   PROGRAM/KIND                  folder of the program: a copy of some files without installation
 //   PROGRAM/../share/shoal/KIND   an installation or a build folder
 #pragma once
 

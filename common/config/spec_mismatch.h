@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reason why a run cannot be resumed: its actors would observe something else than the spec in
-// its config.json.
+// Error message for a run that cannot be resumed, because the observations of its actors would
+// differ from the spec in its config.json.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 namespace shoal {
 
 // One line for an error. If only the model's fingerprint differs, the line names the model file or
-// task library that was changed since the run began; otherwise, the line describes both specs.
+// task library that was changed since the run began. Otherwise, the line describes the two specs.
 std::string SpecMismatch(const RunConfig& run, const ObservationSpec& now);
 
 }  // namespace shoal

@@ -38,7 +38,8 @@ void to_json(Json& out, const KeywordArguments& arguments) {
 
 namespace internal {
 
-// Reads true, false, or a list of at least one name, each once. Returns false for any other value.
+// Reads true, false, or a list of at least one name without duplicates. Returns false for any other
+// value.
 bool ReadStateBlocks(const nlohmann::json& value, StateBlocks* blocks);
 
 // Reads an object of cameras by name. Returns false if the value is not an object, a name is empty,

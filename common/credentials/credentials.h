@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The files that authenticate the processes of secured runs (DDS Security 1.1).
 //
-// A folder that only its owner can read (0700, files 0600) contains:
+// The files are in a folder that only its owner can read (0700, files 0600):
 //
 //   ca.pem, ca.key       certificate authority; ca.key signs only the files of this folder and may
 //                        be removed afterwards
@@ -33,7 +33,8 @@ struct Validity {
 // Validity from one day ago, to allow for clocks that differ, to `days` from now.
 Validity ValidForDays(int days);
 
-// Creates the folder with everything in it, or nothing. Throws Error: usage when it exists.
+// Creates the folder with all its files. On failure, creates nothing and throws Error; the error is
+// kUsage if the folder exists.
 void CreateCredentials(const std::filesystem::path& folder, std::span<const RoleRights> roles,
                        const Validity& validity);
 
@@ -41,13 +42,15 @@ void CreateCredentials(const std::filesystem::path& folder, std::span<const Role
 std::array<std::filesystem::path, 5> CredentialFiles(const std::filesystem::path& folder,
                                                      const std::string& role);
 
-// Checks the files of a role. Throws Error, in one line naming the file, when a file is missing or
-// unreadable; a certificate is not valid at `now` or not signed by ca.pem; the key does not belong
-// to the certificate; or a signed document was altered or has another signer.
+// Checks the files of a role. Throws Error, in one line naming the file,
+//   - if a file is missing or unreadable,
+//   - if a certificate is not valid at `now` or is not signed by ca.pem,
+//   - if the key does not belong to the certificate,
+//   - if a signed document was altered or has another signer.
 void CheckCredentials(const std::filesystem::path& folder, const std::string& role,
                       std::time_t now);
-// Throws Error naming file and topic when the role's credentials do not permit one of the topics.
-// For example, an older version that made the credentials did not have the topic.
+// Throws Error naming file and topic if the role's credentials do not permit one of the topics.
+// This happens, for example, if an older version made the credentials and did not have this topic.
 void CheckRights(const std::filesystem::path& folder, const RoleRights& rights);
 
 }  // namespace shoal

@@ -31,15 +31,16 @@ using Signed = std::unique_ptr<PKCS7, Free<PKCS7_free>>;
 using Signers = std::unique_ptr<STACK_OF(X509), Free<FreeList>>;
 using Buffer = std::unique_ptr<BIO, Free<BIO_free_all>>;
 
-// The oldest error in OpenSSL's queue of this thread, as text. Clears the queue.
+// Returns the text of the oldest error in OpenSSL's queue for this thread. Clears the queue.
 std::string OpensslReason();
-// Throws Error with OpenSSL's reason when `good` is false: "cannot WHAT: REASON".
+// If `good` is false, throws Error "cannot WHAT: REASON" with OpenSSL's reason.
 void Require(bool good, std::string_view what);
 
 Buffer MakeBuffer(std::string_view content = "");
 std::string Content(const Buffer& buffer);
 
-// Read a certificate, or a private key, from a PEM file. Throw Error naming the file.
+// These functions read a certificate or a private key from a PEM file. They throw Error naming the
+// file.
 Certificate ReadCertificate(const std::filesystem::path& file);
 Key ReadKey(const std::filesystem::path& file);
 

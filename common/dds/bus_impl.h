@@ -14,15 +14,15 @@
 
 namespace shoal::dds {
 
-// Another process holds a fixed port of the role. ClaimDomain then tries the next domain.
+// Thrown if another process has a fixed port of the role. ClaimDomain then tries the next domain.
 class PortTakenError : public Error {
  public:
   explicit PortTakenError(const Error& error) : Error(error) {}
 };
 
-// Members are deleted in reverse order: participants before their domain.
+// Members are destroyed in reverse order, so that a participant is deleted before its domain.
 struct Bus::Impl {
-  Entity main_domain, main_participant;        // all but clients
+  Entity main_domain, main_participant;        // all roles except clients
   Entity batch_domain, batch_participant;      // learner and replay
   Entity operate_domain, operate_participant;  // coordinator and clients
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads values from serialised CDR. Every step is bounds-checked, because the bytes come from the
+// Reads values from serialised CDR. Every read is bounds-checked, because the bytes come from the
 // network. Internal.
 #pragma once
 
@@ -17,13 +17,14 @@ namespace shoal::dds {
 
 static_assert(std::endian::native == std::endian::little);
 
-// How a type's body is serialised (the second byte of the header of four; the first is 0).
+// Serialisation of a type's body. The value is the second byte of the 4-byte header; the first byte
+// is 0.
 enum class CdrEncoding : uint8_t {
-  kPlain1 = 1,      // @final: fields aligned to their size
-  kDelimited2 = 9,  // @appendable: aligned to 4 at most, structs and collections with their size
+  kPlain1 = 1,      // @final type: fields are aligned to their size
+  kDelimited2 = 9,  // @appendable type: alignment at most 4; structs and collections have a size
 };
 
-// Reads fields in order. After the first one that does not fit, everything reads as zero and
+// Reads fields in order. If a field does not fit, this field and all later fields read as zero, and
 // Finished() is false.
 class CdrReader {
  public:
@@ -78,7 +79,7 @@ class CdrReader {
     ReadScope(/*may_lack=*/true, read_fields);
   }
 
-  // A sequence of strings or structs.
+  // Reads a sequence of strings or structs. Calls read_element for each element.
   template <class ReadElement>
   void ReadCollection(ReadElement read_element) {
     if (Absent()) return;
@@ -88,14 +89,15 @@ class CdrReader {
     });
   }
 
+  // Whether all reads succeeded and the body has no more bytes than padding.
   bool Finished() const { return ok_ && body_.size() - position_ <= kMaxPadding; }
 
  private:
   static constexpr size_t kHeaderBytes = 4;
   static constexpr size_t kMaxPadding = 3;
 
-  // Reads a size, then calls `read` for a part that must fit into this size. Afterwards the
-  // position is the end of the part, however much `read` has used.
+  // Reads a size, then calls `read` for a part of this size. Afterwards the position is the end of
+  // the part, even if `read` has read less.
   template <class ReadPart>
   void ReadScope(bool may_lack, ReadPart read) {
     const std::span<const uint8_t> part = Take(Read<uint32_t>(), 1);
@@ -123,11 +125,11 @@ class CdrReader {
     return body_.subspan(begin, size);
   }
 
-  const size_t alignment_;  // at most
+  const size_t alignment_;  // largest alignment of a field
   std::span<const uint8_t> body_;
   size_t position_ = 0;
-  size_t end_ = std::numeric_limits<size_t>::max();  // of the innermost scope
-  bool may_lack_ = false;                            // the innermost scope may end early
+  size_t end_ = std::numeric_limits<size_t>::max();  // end of the innermost part
+  bool may_lack_ = false;                            // whether this part may lack its last fields
   bool ok_ = false;
 };
 

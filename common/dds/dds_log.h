@@ -6,12 +6,12 @@
 
 namespace shoal::dds {
 
-// Sends Cyclone's warnings (LineBudget) and errors to shoal::log, for the whole process. May be
-// called again.
+// Sends Cyclone's errors and warnings to shoal::log, for the whole process. The number of warnings
+// is limited (LineBudget). May be called again.
 void RouteDdsLog();
 
-// Collects, during its lifetime, the errors that Cyclone reports on this thread. They are not
-// logged, so that an exception's message can contain them.
+// Collects, during its lifetime, the errors that Cyclone reports on this thread, for the message of
+// an exception. These errors are not logged.
 class DdsErrorCapture {
  public:
   DdsErrorCapture();
@@ -19,7 +19,7 @@ class DdsErrorCapture {
   DdsErrorCapture(const DdsErrorCapture&) = delete;
   DdsErrorCapture& operator=(const DdsErrorCapture&) = delete;
 
-  // One line; "no reason given" when Cyclone reported none.
+  // The errors as one line; "no reason given" if Cyclone reported no error.
   std::string text() const;
 
  private:

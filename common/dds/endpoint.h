@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shared part of writers and readers: the topic, and a log line for a peer whose quality of
-// service does not match. Internal.
+// Functions that writers and readers share: they create a topic, and log an error if a peer's
+// quality of service does not match. Internal.
 #pragma once
 
 #include <memory>
@@ -26,7 +26,7 @@ Entity CreateTopic(Bus& bus) {
                 std::string("topic ") + settings.name);
 }
 
-// `argument` is handed to the data callback, when one is set.
+// `argument`: passed to the data callback, if the caller sets a data callback.
 template <class M>
 ListenerHandle MakeListener(void* argument) {
   ListenerHandle listener(dds_create_listener(argument), &dds_delete_listener);

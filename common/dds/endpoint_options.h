@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Command-line options with which a program of a run finds its endpoint.
+// Command-line options for the endpoint of a program in a run.
 #pragma once
 
 #include "common/dds/run_endpoint.h"
@@ -10,8 +10,8 @@ class App;
 
 namespace shoal::dds {
 
-// Adds --peer, --interface and --secure. `app` fills `options` when it parses, so `options` must
-// live until then.
+// Adds --peer, --interface and --secure. `app` writes `options` when it parses the command line, so
+// `options` must live until then.
 void AddEndpointOptions(CLI::App* app, EndpointOptions* options);
 
 }  // namespace shoal::dds

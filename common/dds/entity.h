@@ -35,8 +35,8 @@ class Entity {
 
   dds_entity_t get() const { return handle_; }
   explicit operator bool() const { return handle_ > 0; }
-  // Deletes the entity. dds_delete occasionally hangs when a peer leaves at the same moment; the
-  // watchdog then ends the process.
+  // Deletes the entity. dds_delete sometimes hangs if a peer leaves at the same time. The watchdog
+  // then ends the process.
   void Reset() {
     if (handle_ > 0) {
       const Watchdog watchdog("deleting a DDS entity", kDeleteLimit);

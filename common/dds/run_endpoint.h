@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The addresses with which a process joins its run. For processes on other hosts, or started by
-// hand, options of the command line replace parts of the run folder's settings.
+// The addresses with which a process joins its run. The run folder has these addresses. Options of
+// the command line replace them for processes on other hosts and for processes that a user starts
+// by hand.
 #pragma once
 
 #include <filesystem>
@@ -12,21 +13,21 @@
 namespace shoal::dds {
 
 struct EndpointOptions {
-  // Replaces cluster.json's host and domain: HOST, or the HOST:PORT that the run prints when it
-  // starts. Empty: cluster.json's values are used.
+  // Replaces the host and the domain of cluster.json: HOST, or the HOST:PORT that the run prints at
+  // its start. Empty: not replaced.
   std::string peer;
   std::string interface;    // replaces config.json's transport.interface; empty: not replaced
   std::string secure = "";  // replaces cluster.json's folder of credentials; empty: not replaced
 };
 
-// Addresses of the run's servers, and the interface of this host that leads to them.
+// Addresses of the run's servers, and the interface of this host that has the route to the servers.
 struct RunEndpoint {
   ClusterAddress address;
   TransportConfig transport;
 };
 
-// The endpoint that RUN/cluster.json and `transport` name, with `options` applied. Throws Error; a
-// malformed peer is a usage error.
+// The endpoint according to RUN/cluster.json and `transport`, after `options` were applied. Throws
+// Error; the kind is kUsage if the peer is malformed.
 RunEndpoint FindEndpoint(const std::filesystem::path& run, const TransportConfig& transport,
                          const EndpointOptions& options);
 

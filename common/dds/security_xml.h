@@ -10,7 +10,7 @@
 namespace shoal::dds {
 
 // The <Security> element for a role with the credentials in `folder` (common/credentials). Returns
-// an empty string if `folder` is empty. Throws Error when the credentials are not valid or
+// an empty string if `folder` is empty. Throws Error if the credentials are not valid or if
 // Cyclone's security plugins are missing.
 std::string SecurityElement(const std::filesystem::path& folder, Role role);
 

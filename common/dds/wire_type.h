@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Maps each message of the list, and each struct within a message, to the type that idlc generates.
-// Internal.
+// Maps each message of message_list.h, and each struct within a message, to the C type that idlc
+// generates. Internal.
 #pragma once
 
 #include "common/link/topic.h"

@@ -19,8 +19,8 @@
 
 namespace shoal::dds {
 
-// Memory for sequences whose elements have another layout on the wire than in the message. The
-// publisher keeps the buffers between calls.
+// Memory for sequences whose elements have another layout in the generated structs than in the
+// message. The writer keeps the buffers between calls.
 struct WireBuffers {
   std::vector<char*> strings;
   std::tuple<std::vector<shoal_idl_Credit>, std::vector<shoal_idl_EvaluationRequest>,
@@ -68,8 +68,8 @@ class FieldWriter {
   }
 
  private:
-  // Number of elements in all sequences of strings. The pointers are reserved at once, because they
-  // must not move.
+  // Number of strings in all sequences of the message. Memory for all pointers is reserved at once,
+  // so that the pointers do not move.
   template <HasFields M>
   static size_t StringsIn(const M& message) {
     return std::apply([](const auto&... field) { return (StringsIn(field) + ... + size_t{0}); },
@@ -122,7 +122,7 @@ class FieldWriter {
 };
 
 // Strings and payloads of the result point into the message and the buffers. The result is valid
-// while both live, until the next call with the same buffers.
+// until the next call with the same buffers, and as long as message and buffers live.
 template <HasFields M>
 typename WireType<M>::Wire ToWire(const M& message, WireBuffers* buffers) {
   return FieldWriter(message, buffers).Write(message);

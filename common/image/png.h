@@ -9,11 +9,12 @@
 
 namespace shoal::image {
 
-// PNG bytes of an image (H, W, C) uint8, row 0 = top, interleaved; C = 1 grey, 3 RGB. CHECK on
-// other C, on empty images and on a pixel count that does not fit.
+// PNG bytes of an image (height, width, channels) uint8, row 0 = top, interleaved; 1 channel is
+// grey, 3 channels are RGB. CHECKs the number of channels, that the image is not empty, and the
+// size of `pixels`.
 std::string EncodePng(int width, int height, int channels, std::span<const uint8_t> pixels);
 
-// The same into a file, atomically. Throws Error naming the path.
+// Writes such an image to a file, atomically. Throws Error naming the path.
 void WritePng(const std::filesystem::path& path, int width, int height, int channels,
               std::span<const uint8_t> pixels);
 

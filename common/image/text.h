@@ -9,12 +9,13 @@
 
 namespace shoal::image {
 
-// Each character takes a cell of this size in pixels; its glyph is 5 x 7 in the top left of it.
+// Each character has a cell of this size in pixels. The glyph of 5 x 7 pixels is in the top left
+// corner of the cell.
 inline constexpr int kCellWidth = 6, kCellHeight = 9;
 
-// Writes one line of printable ASCII ('?' for anything else), its top left at (x, y), into an
-// interleaved image (height, width, 3), row 0 = top. Pixels outside the image are left out. CHECKs
-// the pixel count.
+// Draws one line of text into an interleaved image (height, width, 3), row 0 = top. The top left
+// corner of the text is at (x, y). A character that is not printable ASCII is drawn as '?'. Pixels
+// outside of the image are left out. CHECKs the size of `rgb`.
 void DrawText(std::string_view text, int x, int y, std::array<uint8_t, 3> colour, int width,
               int height, std::span<uint8_t> rgb);
 

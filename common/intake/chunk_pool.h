@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pool of buffers for chunks between the receive threads of DDS and the thread that handles the
-// chunks. Buffers are reused, and their number is bounded.
+// Pool of buffers for chunks. Receive threads of DDS copy chunks into the buffers, and another
+// thread handles the chunks. Buffers are reused, and their number is bounded.
 #pragma once
 
 #include <cstddef>
@@ -23,13 +23,14 @@ struct PooledChunk {
 // Any thread.
 class ChunkPool {
  public:
-  // At most `max_chunks` chunks of up to `chunk_bytes`, allocated when first needed.
+  // The pool has at most `max_chunks` buffers of `chunk_bytes`. A buffer is allocated at its first
+  // use.
   ChunkPool(uint64_t spec_hash, uint64_t chunk_bytes, size_t max_chunks);
 
   // Returns a copy of the chunk. If no buffer is free, counts a drop and returns null. The payload
   // is not copied if the chunk has another spec or is larger than chunk_bytes.
   std::unique_ptr<PooledChunk> Copy(const TransitionChunk& chunk);
-  // Gives a buffer back.
+  // Returns a buffer to the pool.
   void Release(std::unique_ptr<PooledChunk> chunk);
   void SetMaxChunks(size_t max_chunks);
   uint64_t Dropped() const;

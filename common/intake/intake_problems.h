@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Log of the records that a receiver refused or lost. Once per interval it prints one line for each
-// kind of problem, with a count and an example.
+// Logs the records that a receiver refused or lost: one line for each kind of problem in each
+// interval, with a count and an example.
 #pragma once
 
 #include <chrono>
@@ -22,10 +22,10 @@ class IntakeProblems {
   IntakeProblems(uint64_t spec_hash, std::string receiver)
       : spec_hash_(spec_hash), receiver_(std::move(receiver)) {}
 
-  // Remembers the example that the next line will name.
+  // Stores the chunk's problem as the example for the next line.
   void Note(const TransitionChunk& chunk, const ChunkResult& result);
-  // Logs the counts that have grown since the last report, at most once per interval. Returns
-  // false, without a line, if the interval has not passed.
+  // Logs the counts that have increased since the last report. If less than kInterval has passed
+  // since the last report, logs nothing and returns false.
   bool Report(SteadyTime now, const IntakeCounters& counters, uint64_t dropped_chunks);
 
  private:

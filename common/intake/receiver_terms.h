@@ -9,15 +9,16 @@
 
 namespace shoal {
 
-// Least time between messages of changed credits. Every actor receives each message, so changes are
-// collected for this time.
+// Smallest time between two messages with changed credits. Every actor receives each message, so
+// changes are collected for this time.
 inline constexpr std::chrono::milliseconds kCreditSpacing{20};
-// Time between repetitions of all credits.
+// Time between two messages with all credits.
 inline constexpr std::chrono::seconds kCreditInterval{1};
-// Beyond this number of actors, the interval grows with the number of actors, so that at most 1,600
-// credits a second are sent.
+// If there are more actors than this number, the spacing increases with the number of actors, so
+// that at most 1,600 credits a second are sent.
 inline constexpr int64_t kClosestActors = 32;
 
+// Smallest time between two messages with changed credits for this number of actors.
 inline std::chrono::milliseconds CreditSpacing(size_t actors) {
   const int64_t times = (static_cast<int64_t>(actors) + kClosestActors - 1) / kClosestActors;
   return std::min(kCreditSpacing * std::max<int64_t>(times, 1),

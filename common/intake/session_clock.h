@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bound on session numbers (common/config/session_number.h) that a receiver of records accepts.
-// A session number is the wall clock of its actor at its start, and the newest session supersedes
-// the others. A number from the far future would therefore exclude the true actor. If the clock is
-// set back, the bound does not fall, because actors that started before have larger numbers.
+// Upper bound of the session numbers (common/config/session_number.h) that a receiver of records
+// accepts. A session number is the wall-clock time of the actor at its start, and the newest
+// session supersedes the others. A number from the far future would therefore exclude the true
+// actor. If the clock is set back, the bound stays, because actors that started before the change
+// have larger numbers.
 #pragma once
 
 #include <algorithm>
@@ -17,10 +18,10 @@ inline constexpr std::chrono::minutes kClockMargin{10};
 // Not thread-safe; one owner.
 class SessionClock {
  public:
-  // `own_session`: the receiver's session, which is never below those of its predecessors.
+  // `own_session`: the receiver's session, which is higher than earlier sessions of the receiver.
   explicit SessionClock(uint64_t own_session) : highest_(own_session) {}
 
-  // Highest number that a session begun by now may have.
+  // Highest number that a session may have at the time `wall_time_ns`.
   uint64_t Latest(int64_t wall_time_ns) {
     highest_ = std::max(highest_, static_cast<uint64_t>(std::max<int64_t>(0, wall_time_ns)));
     return highest_ + static_cast<uint64_t>(std::chrono::nanoseconds(kClockMargin).count());

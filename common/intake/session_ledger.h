@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Account of each actor session: the outcome of every record that the actor sent. Both receivers,
-// replay and learner, use it.
+// Counts for each actor session how many of its records were stored, rejected or lost. The replay
+// and, on policy, the learner use a ledger.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace shoal {
 
-// Kept in memory. Not thread-safe; one owner.
+// The ledger is in memory. Not thread-safe; one owner.
 class SessionLedger {
  public:
   explicit SessionLedger(size_t most_sessions) : most_sessions_(most_sessions) {}
@@ -24,12 +24,12 @@ class SessionLedger {
   const std::vector<SessionCounters>& all() const { return sessions_; }
   const SessionCounters& at(int i) const { return sessions_[static_cast<size_t>(i)]; }
   std::optional<int> Find(uint32_t actor, uint64_t session) const;
-  // The actor's session that started last; nothing for an unknown actor.
+  // Index of the actor's newest session; empty for an unknown actor.
   std::optional<int> Newest(uint32_t actor) const;
   // Indices of the newest session of each actor, by actor.
   const std::map<uint32_t, int>& newest() const { return newest_; }
 
-  // Adds a session with counters of zero; nothing when the ledger is full.
+  // Adds a session with counters of zero and returns its index; empty if the ledger is full.
   std::optional<int> Add(uint32_t actor, uint64_t session);
   // Replaces a session's counters. CHECKs that the new counters belong to this session.
   void Update(int i, const SessionCounters& counters);
@@ -41,7 +41,7 @@ class SessionLedger {
   void Load(const SessionCounters& counters);
 
  private:
-  // A session was added or changed.
+  // Called after a session was added or changed.
   virtual void OnUpdate(int /*i*/, const SessionCounters& /*counters*/) {}
   void Index(int i);
 

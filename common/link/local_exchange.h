@@ -3,9 +3,9 @@
 // readers. Does not depend on message types. Internal to common/link: local_network.h builds its
 // hubs on this class.
 //
-//   Put:      the writer's history (late_joiners) and the queue of each matched reader get the
-//             sample; the reader's receiver learns that the reader is ready
-//   receiver: a thread that takes the oldest sample of a ready reader and calls the reader back
+//   Put        adds the sample to the writer's history (late_joiners) and to the queue of each
+//              matched reader, and marks the reader as ready
+//   receiver   a thread that takes the oldest sample of a ready reader and calls the reader back
 //
 // A reader's queue holds the last n samples per writer and key, or all samples, limited by the
 // writer's bound of unread bytes. A receiver calls its ready readers in turn, one sample each, so
@@ -44,7 +44,7 @@ class LocalExchange {
   // If `choose` is null, a receiver calls its ready readers in turn.
   explicit LocalExchange(Choice choose = nullptr) : choose_(std::move(choose)) {}
 
-  // The exchange's part of a writer. The writer and its samples share `unread`.
+  // The exchange's data of a writer. The writer and its samples share `unread`.
   class Writer {
    public:
     // `hub`: the hub that owns the writer, for Abandon.
@@ -66,7 +66,7 @@ class LocalExchange {
     SampleQueue history_;  // used with late_joiners only
   };
 
-  // The exchange's part of a reader, which calls `deliver` on the receiver's thread.
+  // The exchange's data of a reader. The exchange calls `deliver` on the receiver's thread.
   class Reader {
    public:
     Reader(const void* hub, const TopicSettings& settings, Receiver& receiver,
@@ -91,47 +91,49 @@ class LocalExchange {
   // The readers that a thread in ServeReaders calls back.
   class Receiver {
     friend class LocalExchange;
-    std::deque<Reader*> ready_;  // readers with samples, except the one being called; each once
+    // Readers that have samples, without duplicates and without the reader whose callback runs.
+    std::deque<Reader*> ready_;
     bool stopping_ = false;
     ConditionVariable changed_;
   };
 
-  // Matches the end with the ends of the other side, until Remove. A reader first gets the history
-  // of the topic's writers. Callbacks must not call Add or Remove.
+  // Matches a writer with the readers of its topic, or a reader with the writers, until Remove. A
+  // reader first gets the history of the writers. Callbacks must not call Add or Remove.
   void Add(Writer& writer);
   void Add(Reader& reader);
-  // Samples of the writer that readers have not read yet still reach them.
+  // Samples of the writer that are still unread are still delivered to the readers.
   void Remove(Writer& writer);
-  // Waits for a running callback; none starts afterwards.
+  // Waits until a running callback has returned. No callback starts afterwards.
   void Remove(Reader& reader);
 
-  // Unmatches all ends of a hub. The hub's readers drop their samples; samples of the hub's writers
-  // still reach other readers. Remove may follow.
+  // Unmatches all writers and readers of a hub. The readers drop their samples. Samples of the
+  // writers are still delivered to readers of other hubs. Remove may follow.
   void Abandon(const void* hub);
-  // Unmatches the ends of a hub until Reconnect, including ends that the hub makes meanwhile. The
-  // hub's readers drop their samples; its writers continue to fill their histories.
+  // Unmatches the writers and readers of a hub until Reconnect, including those that the hub makes
+  // before Reconnect. The readers drop their samples; the writers continue to fill their histories.
   void Disconnect(const void* hub);
-  // Matches the ends of a hub again, as if they were new: a reader on either side gets the
-  // histories of the writers on the other side.
+  // Matches the writers and readers of a hub again, as if they were new. The hub's readers get the
+  // histories of other hubs' writers, and readers of other hubs get the histories of this hub's
+  // writers.
   void Reconnect(const void* hub);
 
-  // Waits until the writer may have `bytes` more unread. Returns false after max_blocking. If
-  // keep_last > 0, it returns true at once. A sample above the bound has room when nothing is
-  // unread.
+  // Waits until the writer may have `bytes` more unread bytes. Returns false after max_blocking. If
+  // keep_last > 0, returns true at once. A sample that is larger than the bound is allowed if
+  // nothing is unread.
   bool WaitForRoom(Writer& writer, uint64_t bytes);
-  // Passes on a sample, which must be the writer's own.
+  // Passes a sample to the readers. It must be a sample of `writer`.
   void Put(Writer& writer, const SharedSample& sample);
   // Waits until all readers have finished reading the writer's samples. Returns false at the
   // deadline.
   bool WaitUntilRead(Writer& writer, SteadyTime deadline);
 
-  // Number of matched ends of the other side.
+  // Number of readers that match the writer, or of writers that match the reader.
   int Matched(const Writer& writer) const;
   int Matched(const Reader& reader) const;
 
   // Calls back the receiver's readers until Stop.
   void ServeReaders(Receiver& receiver);
-  // The receiver's readers must be gone.
+  // Ends ServeReaders. The receiver's readers must be removed before.
   void Stop(Receiver& receiver);
 
  private:
@@ -157,8 +159,8 @@ class LocalExchange {
   }
   // Records that one of the sample's readers has finished reading.
   static void CountRead(StoredSample& sample);
-  // Waits for the next reader to call; `sample` receives its oldest sample. Returns null when the
-  // receiver is stopped.
+  // Waits for the next ready reader and returns it; `sample` becomes the reader's oldest sample.
+  // Returns null if the receiver is stopped.
   Reader* WaitForReady(Receiver& receiver, SharedSample* sample) SHOAL_EXCLUDES(mutex_);
   void FinishCall(Reader& reader, StoredSample& sample) SHOAL_EXCLUDES(mutex_);
 

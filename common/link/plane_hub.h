@@ -16,7 +16,7 @@ namespace shoal::link {
 
 class PlaneHub final : public Hub {
  public:
-  // `operate` carries Plane::kOperate; `rest` carries the other planes. Borrows both.
+  // `operate` carries Plane::kOperate; `rest` carries the other planes. Borrows the two hubs.
   PlaneHub(Hub& rest, Hub& operate) : rest_(rest), operate_(operate) {}
 
   std::map<std::string, uint64_t> Malformed() const override {

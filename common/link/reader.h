@@ -21,9 +21,9 @@ class Reader {
     CHECK(on_message != nullptr) << Topic<M>::kSettings.name;
     end_ = hub.MakeReader(MessageType<M>(), std::move(on_message));
   }
-  // When the destructor has returned, no callback runs. A callback must not destroy its reader.
+  // The default destructor waits for a running callback. A callback must not destroy its reader.
 
-  // Number of writers matched now.
+  // Number of writers that match now.
   int Matched() const { return end_->Matched(); }
   // Number of samples that could not be read.
   uint64_t Malformed() const { return end_->Malformed(); }

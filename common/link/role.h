@@ -15,9 +15,9 @@ enum class Role { kCoordinator, kLearner, kReplay, kActor, kEval, kClient };
 inline constexpr Role kRoles[] = {Role::kCoordinator, Role::kLearner, Role::kReplay,
                                   Role::kActor,       Role::kEval,    Role::kClient};
 
-// A slow reader of one plane does not delay the other planes. kMain: records, weights, metrics and
-// control. kBatch: requests and batches between learner and replay. kOperate: messages between
-// coordinator and clients.
+// Groups of topics. A slow reader in one plane does not delay the other planes. kMain: records,
+// weights, metrics and control. kBatch: requests and batches between learner and replay. kOperate:
+// messages between coordinator and clients.
 enum class Plane { kMain, kBatch, kOperate };
 
 // "coordinator", "learner", "replay", "actor", "eval", "client".
@@ -39,7 +39,7 @@ constexpr const char* RoleName(Role role) {
   return "?";
 }
 
-// The role with this name; empty if there is none.
+// The role with this name; empty if there is no such role.
 constexpr std::optional<Role> FindRole(std::string_view name) {
   for (const Role role : kRoles) {
     if (name == RoleName(role)) return role;
@@ -47,9 +47,9 @@ constexpr std::optional<Role> FindRole(std::string_view name) {
   return std::nullopt;
 }
 
-// Bytes that a writer of the role may have unread before a write waits (hub.h, "History"). Servers
-// have few bulk writers, so their bound is large. Many actors share the buffers of one receiver, so
-// the bound of an actor is small.
+// Limit for the unread bytes of a writer of the role; beyond this limit a write waits (hub.h,
+// "History"). Servers have few bulk writers, so their limit is large. Many actors share the buffers
+// of one receiver, so the limit of an actor is small.
 constexpr uint64_t UnreadBytesBound(Role role) {
   switch (role) {
     case Role::kCoordinator:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The processes of a run, and which process writes to which, as one value. The following are
-// derived from the topology: the process plan, the fixed ports, the account of the records, the
+// The processes of a run, and the processes to which each of them writes. The following are derived
+// from the topology: the process plan, the fixed ports, the counts of stored and lost records, the
 // messages that the coordinator accepts, and the displays.
 //
 // Today each run has one learner and, unless it learns on policy, one replay. A second learner or
@@ -39,8 +39,9 @@ std::optional<int> FixedPort(Role role, uint32_t index);
 
 class RunTopology {
  public:
-  // `config` must be resolved; config.actors counts all actors. `actors_elsewhere` has the number
-  // of actors on each other host. These actors have the highest indices, in the order of the hosts.
+  // `config` must be resolved; config.actors is the number of all actors. `actors_elsewhere`:
+  // number of actors on each other host. These actors have the highest indices, in the order of the
+  // hosts.
   explicit RunTopology(const Config& config, std::span<const int> actors_elsewhere = {});
 
   // The processes that the coordinator starts, in starting order.
@@ -49,7 +50,7 @@ class RunTopology {
   std::vector<RunProcess> Of(Role role) const;
   bool Has(Role role) const { return !Of(role).empty(); }
 
-  // The run's only learner, and its only replay. The run must have exactly one.
+  // The run's learner, and the run's replay. The run must have exactly one process of this role.
   RunProcess OnlyLearner() const;
   RunProcess OnlyReplay() const;
 
@@ -67,7 +68,8 @@ class RunTopology {
   std::vector<RunProcess> ReadersOf() const {
     return ReadersOf(Topic<M>::kSettings.name);
   }
-  // The readers of the actors' records. They acknowledge the records and keep the account.
+  // The readers of the actors' records. These processes acknowledge the records and count how many
+  // of them were stored, rejected or lost.
   std::vector<RunProcess> RecordReceivers() const { return ReadersOf<TransitionChunk>(); }
 
   // Whether the topic of M can have a writer with this role and index, now or after `shoal scale`

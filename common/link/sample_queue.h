@@ -18,13 +18,13 @@ namespace shoal::link {
 
 class SampleQueue {
  public:
-  // 0: keeps all.
+  // 0: keeps all samples.
   explicit SampleQueue(int32_t keep_last) : keep_last_(keep_last) {}
 
   // Appends the sample. If the queue already held keep_last samples of the same writer and key,
   // removes and returns the oldest of them; otherwise returns null.
   SharedSample Push(SharedSample sample);
-  // Removes and returns the oldest sample; null when there is none.
+  // Removes and returns the oldest sample; null if the queue is empty.
   SharedSample Pop();
   // Removes and returns all samples, the oldest first.
   std::list<SharedSample> TakeAll();
@@ -41,8 +41,8 @@ class SampleQueue {
 
   const int32_t keep_last_;
   Samples samples_;
-  // If keep_last > 0: positions of each writer's and key's samples, the oldest first. No entry is
-  // empty.
+  // If keep_last > 0: positions of the samples of each writer and key, the oldest first. No list of
+  // positions is empty.
   std::map<WriterAndKey, std::deque<Samples::iterator>> places_;
 };
 

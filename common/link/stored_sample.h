@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A message as the link within one process stores it: copied once when it is written, then shared
-// by all readers and never changed.
+// A message in the memory of the link within one process. The message is copied once, when it is
+// written. All readers share this copy, which never changes.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,13 @@
 
 namespace shoal::link {
 
-// Counts of one writer's samples that some reader has not finished reading. The writer's samples
-// share this object, so that it may outlive the writer. The exchange's mutex guards the counts
-// (local_exchange.h).
+// Number and bytes of one writer's samples that at least one reader has not finished reading. The
+// writer's samples share this object, so the object may outlive the writer. The exchange's mutex
+// guards the counts (local_exchange.h).
 struct Unread {
   uint64_t samples = 0;
   uint64_t bytes = 0;
-  ConditionVariable fell;
+  ConditionVariable fell;  // notified when the counts decrease
 };
 
 class StoredSample {
@@ -32,7 +32,7 @@ class StoredSample {
   const Key& key() const { return key_; }
   // Bytes that count against the writer's bound.
   uint64_t bytes() const { return bytes_; }
-  // All samples of a writer share one object; samples of different writers never do.
+  // All samples of a writer share one Unread. Samples of different writers have different ones.
   Unread& unread() const { return *unread_; }
 
   // Number of readers that have not finished reading the sample. The exchange's mutex guards this
@@ -54,7 +54,7 @@ using SharedSample = std::shared_ptr<StoredSample>;
 template <class M>
 class StoredMessage final : public StoredSample {
  public:
-  // Copies the message and its payload. Throws Error when there is no memory for the payload.
+  // Copies the message and its payload. Throws Error if there is no memory for the payload.
   StoredMessage(std::shared_ptr<Unread> unread, const M& message)
       : StoredSample(std::move(unread), KeyOf(message), Bytes(message)), message_(message) {
     if constexpr (requires { message_.payload; }) {

@@ -18,8 +18,9 @@ namespace shoal::link {
 struct TopicSettings {
   const char* name;
   Plane plane;
-  // 0: every sample is kept until all readers have it, and a write blocks at most max_blocking.
-  // n: the last n samples per key are kept, older ones are overwritten, and a write never blocks.
+  // 0: every sample is kept until all readers have it, and a write blocks for at most max_blocking.
+  // n: the last n samples per key are kept, older samples are overwritten, and a write never
+  // blocks.
   int32_t keep_last;
   bool late_joiners;  // late joiners receive the last keep_last samples per key
   bool bulk;          // true: a @final type in plain CDR; else @appendable (docs/wire_format.md)
@@ -44,7 +45,7 @@ inline constexpr bool bulk = true, small = false;
 SHOAL_MESSAGES(SHOAL_TOPIC)
 #undef SHOAL_TOPIC
 
-// The roles that may write a topic, and those that may read it.
+// The roles that may write a topic, and the roles that may read it.
 struct TopicRights {
   const char* topic;
   std::vector<Role> writers, readers;

@@ -18,9 +18,9 @@ class Writer {
   // Borrows the hub. Throws Error.
   explicit Writer(Hub& hub) : end_(hub.MakeWriter(MessageType<M>())) {}
 
-  // Copies and sends the message. Blocks at most for the topic's max_blocking. Returns false when
-  // the message was not sent in this time; the caller then keeps the message and tries again. Any
-  // thread, but one at a time per writer.
+  // Copies and sends the message. Blocks for at most the topic's max_blocking. Returns false if the
+  // message could not be sent in this time; the caller then keeps the message and tries again. Any
+  // thread may call it, but only one thread at a time for each writer.
   bool Write(const M& message) {
     if constexpr (requires { message.payload; }) {
       CHECK(message.payload.size() <= kMaxPayloadBytes)
@@ -28,11 +28,11 @@ class Writer {
     }
     return end_->Write(message);
   }
-  // Number of readers matched now.
+  // Number of readers that match now.
   int Matched() const { return end_->Matched(); }
-  // Waits until every sample has arrived at all matched readers; a process calls it before it
-  // exits. The callback of the last sample may still run. Returns false at the deadline. A deadline
-  // of 0 checks without waiting.
+  // Waits until every sample has arrived at all matched readers. A process calls this function
+  // before it exits. The callback of the last sample may still run. Returns false at the deadline.
+  // A deadline of 0 checks without waiting.
   bool WaitForAcks(std::chrono::milliseconds deadline) { return end_->WaitForAcks(deadline); }
 
  private:

@@ -2,7 +2,8 @@
 // Plans of the encoder, actor and critic that a configuration describes. All names of parameters
 // are defined here. Checkpoints, weights on the wire and layers use these names.
 //
-// Dimensions: F trunk outputs, V vector size, A actions, H_i hidden units.
+// Dimensions: F trunk outputs, V vector size, A actions, H_i units of hidden layer i (H_{-1}:
+// inputs of the MLP), H units of the last hidden layer.
 //
 //   ENCODER.conv{i}.{weight, bias}                                   only with pixels
 //   HEAD.trunk.{weight, bias, norm.weight, norm.bias}                only with pixels
@@ -25,10 +26,11 @@
 
 namespace shoal::nn {
 
-// Plan of the encoder, which maps stacks of frames (K*C, H, W) to a feature map. The plan has no
-// layers if the observation has no pixels. Throws Error (kUsage) if network.encoder does not exist,
-// if the encoder does not fit the images (the error names what would fit), or if keys of the
-// compact encoder are set beside another encoder.
+// Plan of the encoder, which maps stacks of K frames with C channels, (K*C, height, width), to a
+// feature map. The plan has no layers if the observation has no pixels. Throws Error (kUsage)
+//   - if network.encoder does not exist,
+//   - if the encoder does not fit the images,
+//   - if keys of the compact encoder are set, but network.encoder selects another encoder.
 NetworkPlan PlanEncoder(const NetworkConfig& network, const ObservationSpec& spec,
                         const std::string& name = "encoder");
 
@@ -44,14 +46,14 @@ struct HeadPlan {
 };
 
 enum class ActorOutput {
-  kGaussian,       // 2A: mean, raw log deviation
-  kDeterministic,  // A
-  kUnsquashed,     // A: mean of a Gaussian without tanh; its log deviation is a parameter
+  kGaussian,       // 2A outputs: mean, and log deviation before it is bounded
+  kDeterministic,  // A outputs: action before tanh
+  kUnsquashed,     // A outputs: mean of a Gaussian without tanh; the log deviation is a parameter
 };
-// How the raw log deviation is bounded.
+// Method that bounds the log deviation of kGaussian.
 enum class LogStd {
   kSmooth,   // by tanh, in [-5, 2]
-  kClamped,  // cut off at -20 and 2
+  kClamped,  // clamped to [-20, 2]
 };
 struct ActorPlan : HeadPlan {
   ActorOutput output = ActorOutput::kGaussian;
@@ -74,8 +76,8 @@ HeadPlan PlanCritic(const NetworkConfig& network, const ObservationSpec& spec,
 HeadPlan PlanObservationHead(const NetworkConfig& network, const ObservationSpec& spec,
                              const std::string& name, int outputs, double output_gain);
 
-// Names of two tensors (V) that a policy has beside its parameters if its observation is
-// normalised: the mean and variance of the observations in training.
+// If the observation of a policy is normalised, the policy has these two tensors (V) in addition to
+// its parameters: mean and variance of the observations in training.
 inline constexpr char kObservationMean[] = "observation.mean";
 inline constexpr char kObservationVariance[] = "observation.variance";
 

@@ -5,7 +5,7 @@
 //   Gaussian        (mean, r) = MLP(trunk(features), vector)
 //                   log_std = -5 + 3.5 (tanh(r) + 1), in [-5, 2]     LogStd::kSmooth
 //                   log_std = r clamped to [-20, 2]                  LogStd::kClamped
-//   unsquashed      mean = MLP(trunk(features), vector),   log_std a parameter of its own
+//   unsquashed      mean = MLP(trunk(features), vector),   log_std is a parameter
 //   deterministic   mean = MLP(trunk(features), vector),   action = tanh(mean)
 //
 // Dimensions: B batch, A actions, V vector size.
@@ -39,7 +39,7 @@ class ActorHead {
   void Refresh();
   // vector (B, V).
   void Forward(const float* vector);
-  // Backward pass of a Gaussian policy, from dL/dmean, dL/dlog_std (B, A).
+  // Backward pass of a Gaussian policy. Arguments: dL/dmean and dL/dlog_std, both (B, A).
   void Backward(const float* mean_gradient, const float* log_std_gradient);
   // Backward pass of a deterministic policy: see ActorModule::BackwardAction.
   void BackwardAction(const float* action_gradient, double mean_penalty);
@@ -56,9 +56,9 @@ class ActorHead {
   const LogStd log_std_kind_;
   int batch_, action_size_;
   std::vector<float> mean_;             // (B, A)
-  std::vector<float> log_std_;          // (B, A); empty: deterministic
-  std::vector<float> action_;           // (B, A); empty: Gaussian
-  std::vector<float> output_gradient_;  // (B, 2A), or (B, A)
+  std::vector<float> log_std_;          // (B, A); empty for a deterministic policy
+  std::vector<float> action_;           // (B, A); empty for a Gaussian policy
+  std::vector<float> output_gradient_;  // (B, 2A) if gaussian_, else (B, A)
 };
 
 }  // namespace shoal::nn

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // An actor computes a Gaussian over actions before tanh, or one action, from features and vector
 // (Eq. 4 of docs/algorithm.md).
+//
+// Dimensions: B batch, A actions, V vector size.
 #pragma once
 
 #include <memory>
@@ -33,11 +35,12 @@ class ActorModule final : public Module {
   void Refresh() override;
   // Reads the current features and vector (B, V).
   Output Forward(Array vector);
-  // Gradients of the parameters, for the latest Forward of a Gaussian actor, from dL/dmean and
-  // dL/dlog_std (B, A).
+  // Computes the gradients of the parameters for the latest Forward of a Gaussian actor. Arguments:
+  // dL/dmean and dL/dlog_std, both (B, A).
   void Backward(Array mean_gradient, Array log_std_gradient);
-  // The same for a deterministic actor, from dL/daction (B, A). The loss also includes mean_penalty
-  // times the mean square of `mean`.
+  // Computes the gradients of the parameters for the latest Forward of a deterministic actor.
+  // action_gradient: dL/daction (B, A). The loss also includes mean_penalty times the mean square
+  // of `mean`.
   void BackwardAction(Array action_gradient, double mean_penalty);
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Adam and the moving average of target networks, each one pass over whole parameter sets (Eq. 10
-// and 9 of docs/algorithm.md).
+// Adam, and the moving average of target networks (Eq. 10 and 9 of docs/algorithm.md). Each of the
+// two operations is one pass over whole parameter sets.
 //
 //   m' = b1 m + (1 - b1) g            b1 = 0.9, b2 = 0.999
 //   v' = b2 v + (1 - b2) g^2
@@ -8,10 +8,12 @@
 //
 // Source: Kingma and Ba 2014, arXiv:1412.6980, algorithm 1.
 //
-// Each of N replicas steps its share (1/N) of the parameters, whose values all replicas use. The
-// gradients of a share are averaged over replicas, weighted by their rows. Moments exist once.
+// Each of N replicas updates its share (1/N) of the parameters. All replicas use the same values.
+// The gradients of a share are averaged over the replicas, with the replicas' numbers of rows as
+// weights. The moments exist once for all replicas.
 //
-// Threads: each pass is split over the current ThreadScope; results do not depend on its size.
+// Threads: each pass is split over the threads of the current ThreadScope. Results do not depend on
+// the number of threads.
 #pragma once
 
 #include <array>
@@ -29,16 +31,17 @@ namespace shoal::nn {
 struct ModuleContext;
 
 // Optimiser of parameter sets that are trained by one loss. Borrows the sets. With replicas, each
-// replica has an optimiser with the same sets, and all call the same functions in the same order.
+// replica has an optimiser of the same sets, and all replicas call the same functions in the same
+// order.
 class Adam {
  public:
   struct Options {
     double rate = 0;
     double epsilon = 1e-8;
-    double max_norm = 0;  // a step scales gradients of a larger Euclidean norm down to it; 0: none
+    double max_norm = 0;  // limit for the Euclidean norm of the gradients; 0: no limit
   };
 
-  // Borrows the replica; null: alone.
+  // Borrows the replica; null if there are no replicas.
   Adam(const std::vector<ParameterSet*>& sets, const Options& options, Replica* replica = nullptr);
   // Uses the replica of `context`, which must also be the replica of the trained modules.
   Adam(const std::vector<ParameterSet*>& sets, const Options& options,
@@ -52,9 +55,9 @@ class Adam {
 
   // Averages the gradients over replicas and returns the sum of their squares. Each replica
   // averages its own share; its other gradients do not change. Call it once for each backward pass,
-  // even if no step follows. Step calls it if there was no call since the last Step. If the norm is
-  // not limited, this function also computes the step, so that the replicas meet only once; Step
-  // then applies the step.
+  // even if no step follows. Step calls GatherGradients if there was no call since the last Step.
+  // If the norm is not limited, GatherGradients also computes the step, and Step only applies the
+  // step, which saves the replicas a barrier.
   double GatherGradients();
   // Applies the sets' gradients, and the statistics that their forward passes measured. If the norm
   // is limited, larger gradients are multiplied by max_norm / (norm + 1e-6).
@@ -66,11 +69,12 @@ class Adam {
 
   // Writes tensors "adam.m.NAME" and "adam.v.NAME" for every parameter, and "adam.steps.`group`".
   void Export(const std::string& group, TensorMap* tensors) const;
-  // Reads what Export wrote. On an error it throws Error and changes nothing.
+  // Reads the tensors that Export wrote. On an error, throws Error and changes nothing.
   void Import(const TensorMap& tensors, const std::string& group, const std::string& source);
 
  private:
-  // Moments of one parameter set, in its layout: the current ones, and those that a step writes.
+  // Moments of one parameter set, in the layout of the set. Index current_: the current moments;
+  // the other index: the moments that a step writes.
   struct Moments {
     std::array<std::vector<float>, 2> m, v;
   };

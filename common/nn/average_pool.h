@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Average pooling to a map of a given size from a source of any size, as PyTorch's
-// AdaptiveAvgPool2d.
+// Average pooling of a map of any size to a map of a given size. The result is the same as that of
+// PyTorch's AdaptiveAvgPool2d.
 //
 //   y[b, c, i, j] = mean of x[b, c, u, v] over floor(i H/h) <= u < ceil((i+1) H/h), v likewise
 //
-// Windows overlap if h does not divide H; a source smaller than the output is repeated.
+// Windows overlap if h does not divide H. If the source is smaller than the output, values of the
+// source are repeated.
 // Shapes: source (B, C, H, W), output (B, C, h, w) row-major, in the compute type; sums are f32.
 #pragma once
 
@@ -14,7 +15,8 @@ namespace shoal::nn {
 
 class AveragePool final : public MapLayer {
  public:
-  // source_gradient: has the source's description and is overwritten; may be empty.
+  // source_gradient: same shape and layout as source; overwritten, not accumulated; empty if no
+  // gradient is needed.
   AveragePool(const LayerContext& context, const LayerPlan& plan, const dnnl::memory& source,
               const dnnl::memory& source_gradient);
 

@@ -12,8 +12,8 @@
 // The optimiser's next step applies the running statistics of the latest kBatch pass together with
 // the gradients. An update without a step does not change the statistics.
 //
-// Source: Ioffe and Szegedy 2015, arXiv:1502.03167; constants as PyTorch's BatchNorm2d.
-// Shapes: x, skip, y (B, C, h, w) in the compute type; everything per channel f32.
+// Source: Ioffe and Szegedy 2015, arXiv:1502.03167; constants of PyTorch's BatchNorm2d.
+// Shapes: x, skip, y (B, C, h, w) in the compute type; all values per channel (C) f32.
 #pragma once
 
 #include <vector>
@@ -22,15 +22,16 @@
 
 namespace shoal::nn {
 
-// Memory of the map that a layer reads and of the gradient that it writes. Both may be empty.
+// Memory of a map that a layer reads, and memory to which the layer writes the map's gradient. Each
+// may be empty.
 struct MapSource {
   dnnl::memory values, gradient;
 };
 
 class BatchNorm final : public MapLayer {
  public:
-  // `plan`: the convolution that writes `source`. Each gradient has the description of its values
-  // and is overwritten. skip: empty if there is no skip connection.
+  // `plan`: the convolution that writes `source`. Each gradient has the same shape and layout as
+  // its values; it is overwritten, not accumulated. skip: empty if there is no skip connection.
   BatchNorm(const LayerContext& context, const LayerPlan& plan, const MapSource& source,
             const MapSource& skip);
 

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Convolution, then ReLU if the plan has one and no batch normalisation precedes it.
+// Convolution, then ReLU if the plan has a ReLU and no batch normalisation. If the plan has both,
+// BatchNorm computes the ReLU.
 //
 //   y[b, n, i, j] = max(0, bias[n] + sum_{c,u,v} weight[n, c, u, v] x[b, c, i*s+u-p, j*s+v-p])
 //
-// with x = 0 outside of its map.
+// Outside of its map, x is 0.
 //
 // Dimensions: B batch, C channels in, N filters, (H, W) in, (h, w) out, s stride, p padding; the
-// plan defines all of them except B. oneDNN chooses the layouts in memory; neighbouring layers
-// share them where it can.
+// plan defines all of them except B. oneDNN chooses the layouts in memory, if possible the same
+// layout for the output of one layer and the source of the next layer.
 #pragma once
 
 #include "common/nn/laid_out_weight.h"
@@ -17,8 +18,8 @@ namespace shoal::nn {
 
 class Conv final : public MapLayer {
  public:
-  // source (B, C, H, W) in the compute type. `source_gradient` has the source's description; it is
-  // empty if the gradient is not needed.
+  // source: (B, C, H, W) in the compute type. source_gradient: same shape and layout as source;
+  // overwritten, not accumulated; empty if no gradient is needed.
   Conv(const LayerContext& context, const LayerPlan& plan, const dnnl::memory& source,
        const dnnl::memory& source_gradient);
 
@@ -35,7 +36,7 @@ class Conv final : public MapLayer {
   dnnl::memory::dims strides_, padding_;
   bool relu_, has_bias_;
   Parameter weight_, bias_;
-  dnnl::memory bias_values_;  // the parameter's array
+  dnnl::memory bias_values_;  // memory of the parameter's values
   Relayout forward_source_;
   LaidOutWeight forward_weight_;
   Op forward_;

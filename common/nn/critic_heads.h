@@ -3,7 +3,7 @@
 //
 //   q_i(s, a) = MLP_i([ trunk(features) | vector | a ]),  i = 1, 2, ...
 //
-// Dimensions: B batch, A actions, V vector size.
+// Dimensions: B batch, F trunk outputs, V vector size, A actions.
 #pragma once
 
 #include <span>
@@ -31,8 +31,8 @@ class CriticHeads {
   void Refresh();
   // Computes the part that depends on the observation alone. vector: (B, V).
   void ForwardObservation(const float* vector);
-  // Computes the Q functions of the latest observation and of action (B, A). May be called again
-  // with other actions.
+  // Computes the Q functions of the latest observation and of action (B, A). Several calls, with
+  // different actions, may follow one ForwardObservation.
   void ForwardAction(const float* action);
 
   // dL/dq_i (B), one for each Q function; an empty array counts as zeros.

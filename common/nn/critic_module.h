@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A critic: one trunk and one or more Q functions of features, vector and action.
+//
+// Dimensions: B batch, V vector size, A actions.
 #pragma once
 
 #include <memory>
@@ -33,15 +35,16 @@ class CriticModule final : public Module {
   // Computes the part that depends on the observation alone, from the current features and vector
   // (B, V).
   void ForwardObservation(Array vector);
-  // Computes the Q functions of the latest observation and of action (B, A), which is empty if the
-  // plan has no action. May be called again with other actions.
+  // Computes the Q functions of the latest observation and of action (B, A). The action is empty if
+  // the plan has no action. Several calls, with different actions, may follow one
+  // ForwardObservation.
   void ForwardAction(Array action);
 
-  // dL/dq_i, of the shape of q(i), one for each Q function; empty if the loss does not use that
+  // dL/dq_i, of the shape of q(i), one for each Q function; empty if the loss does not use this Q
   // function.
   using Gradients = std::span<const Array>;
-  // Computes the gradients of all parameters. The gradients of a function that the loss does not
-  // use become 0.
+  // Computes the gradients of all parameters. If the loss does not use a Q function, the gradients
+  // of its parameters become 0.
   void Backward(Gradients q_gradients);
   // Computes only the gradient of the action (B, A).
   void BackwardAction(Gradients q_gradients, Array action_gradient);

@@ -2,6 +2,8 @@
 // Linear layer, optional LayerNorm, activation.
 //
 //   y = act(LN(weight x + bias))
+//
+// Dimensions: B batch, O outputs. xhat and rstd: see layer_norm.h.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The layers of an encoder's plan, which map frames to a feature map (Eq. 2 of docs/algorithm.md).
+//
+// Dimensions: B batch, K frames of a stack, (C, H, W) of a frame, (N, h, w) of the feature map.
 #pragma once
 
 #include <cstdint>
@@ -23,32 +25,33 @@ class Encoder {
   const dnnl::memory& features_gradient() const { return features_gradient_; }
 
   void Refresh();
-  // frames (B, K*C, H, W) u8. statistics: must be kRunning in inference.
+  // frames: (B, K*C, H, W) u8. statistics: must be kRunning in inference.
   void Forward(const uint8_t* frames, Statistics statistics);
-  // Backward pass of the latest Forward. With batch normalisation in the plan, its statistics must
-  // have been kBatch.
+  // Backward pass of the latest Forward. If the plan has batch normalisation, the statistics of
+  // that Forward must have been kBatch.
   void Backward();
 
  private:
-  // One layer of the plan. If other layers read the same source, `shared` says how the gradients
-  // are summed: after the backward pass, this layer's share is added to the source's gradient.
+  // One layer of the plan. If several layers read the same source, their gradients are summed.
   struct Stage {
     std::unique_ptr<MapLayer> layer;
-    MapSource shared = {};  // values: the share; gradient: the sum
+    // Empty unless this layer's gradient must be added to the sum after the layer's backward pass.
+    // values: gradient from this layer; gradient: the sum.
+    MapSource shared = {};
   };
 
   void Build(const LayerContext& context, const NetworkPlan& plan);
-  // Memory from which layer `reader` reads the output of layer `read`, and to which it writes the
-  // gradient of that output.
+  // Returns the memory from which layer `reader` reads the output of layer `read`, and the memory
+  // to which `reader` writes the gradient of this output.
   MapSource SourceOf(const NetworkPlan& plan, int reader, int read, MapSource* shared);
   void BuildFeatures(const LayerContext& context);
 
   int planes_, height_, width_, pool_;
   float shift_;         // added to the scaled pixels
-  dnnl::memory input_;  // output of the pixels' layer, row-major in the compute type
+  dnnl::memory input_;  // output of the pixels layer, row-major in the compute type
   std::vector<Stage> stages_;
-  std::vector<MapSource> outputs_;  // of each layer of the plan
-  Relayout flatten_;                // of the last layer's output
+  std::vector<MapSource> outputs_;  // output and its gradient, for each layer of the plan
+  Relayout flatten_;                // converts the last layer's output to row-major features_
   dnnl::memory features_, features_gradient_;
   Op unflatten_gradient_;
 };

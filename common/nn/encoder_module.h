@@ -20,9 +20,9 @@ class EncoderModule final : public Module {
 
   const Features& features() const;
   void Refresh() override;
-  // frames (B, K*C, H, W) u8. The features stay valid until the next call. `statistics` selects the
-  // statistics of an encoder with batch normalisation; other encoders ignore it. Use kBatch in a
-  // pass that Backward and an optimiser's step follow; that step also updates the running
+  // frames: B stacks of K frames (C, H, W), (B, K*C, H, W) u8. The features stay valid until the
+  // next call. `statistics` matters only for an encoder with batch normalisation. Use kBatch in a
+  // pass that is followed by Backward and an optimiser's step; this step also updates the running
   // statistics. Use kRunning in targets and in all passes of a module for inference.
   void Forward(Frames frames, Statistics statistics);
   // Computes the gradients of the parameters for the latest Forward. The gradient of the features

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The file of network.encoder_weights: safetensors that an encoder starts from.
+// Reads the file of network.encoder_weights: a safetensors file with an encoder's initial weights.
 //
 // Tensors have Shoal's names, encoder.NAME, as in a checkpoint's policy.safetensors. If no name in
 // the file begins with "encoder.", NAME alone is used; for resnet18 and alexnet, NAME is
@@ -14,7 +14,7 @@
 namespace shoal::nn {
 
 // Returns the encoder's tensors, F32, named encoder.NAME; empty if the key is empty. Throws Error
-// (kUsage) that names the file and the tensor if a tensor is missing, has another shape or type, is
+// (kUsage) that names the file and the tensor if a tensor is missing, has a wrong shape or type, is
 // not finite or does not belong to this encoder.
 TensorMap ReadEncoderWeights(const NetworkConfig& network, const ObservationSpec& spec);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Output of an encoder for the heads above it, in the memory of its engine. Opaque outside of
-// common/nn.
+// Output of an encoder, which heads read, in the memory of the engine. Opaque outside of common/nn.
+//
+// Dimensions: B batch, (N, h, w) of the feature map.
 #pragma once
 
 #include "common/nn/layer_context.h"
@@ -22,8 +23,9 @@ class Features {
   dnnl::memory values_, gradient_;
 };
 
-// Memory of the features that a head reads and of the gradient that it writes. Both are empty
-// without pixels; the gradient is empty if the head does not train the encoder.
+// Memory of the features that a head reads, and memory to which the head writes their gradient.
+// Without pixels, both memories are empty. If the head does not train the encoder, the memory of
+// the gradient is empty.
 struct FeatureSource {
   dnnl::memory values, gradient;
 };

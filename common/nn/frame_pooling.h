@@ -21,8 +21,8 @@ void PoolFrames(const uint8_t* in, const FrameShape& shape, int pool, float shif
 void PoolFramesToBf16(const uint8_t* in, const FrameShape& shape, int pool, float shift,
                       uint16_t* out);
 
-// Mean over images of the standard deviation of all bytes of an image, in grey levels.
-// in (images, bytes) u8.
+// Returns the standard deviation of the bytes of one image, averaged over the images, in grey
+// levels. in: (images, bytes) u8.
 double MeanFrameSpread(const uint8_t* in, int images, int bytes);
 
 }  // namespace shoal::nn

@@ -23,8 +23,8 @@ struct HostMemory {
   }
 };
 
-// Returns a handle that borrows the numbers of a vector or span. A handle of const numbers must not
-// be a destination.
+// Returns a handle that borrows the numbers of a vector or span. If these numbers are const,
+// nothing may write through the handle.
 template <class Values>
 auto HostArray(Values&& values) {
   return HostMemory::Handle(std::span(values));

@@ -14,15 +14,15 @@ namespace shoal::nn {
 // parameters up by name. Refresh() copies the parameters' current values and must follow every
 // change of the parameters. Forward() reads the source, stores the values that the gradient needs
 // and overwrites the output. Backward() refers to the latest Forward(). A layer is used by one
-// thread at a time, under a ThreadScope of the size in which the layer was built.
+// thread at a time, under a ThreadScope of the same size as during construction.
 struct LayerContext {
   ParameterSet* parameters;  // borrowed; outlives the layers
   Precision precision;
   int batch;
   bool training;  // false: Forward only
   std::shared_ptr<Scratchpad> scratchpad;
-  // If true, gradients of weights are computed row-major, the layout of the parameter set, and not
-  // in the layout that the primitive prefers: see Linear.
+  // If true, gradients of weights are computed row-major, the layout of the parameter set, instead
+  // of in the layout that the primitive prefers.
   bool plain_gradients = false;
 };
 

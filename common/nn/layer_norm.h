@@ -7,7 +7,8 @@
 //
 // Source: Ba et al. 2016, arXiv:1607.06450.
 // Shapes: x, xhat, y and their gradients (B, N) f32; rstd (B); weight, bias and their gradients
-// (N). Threads: rows are split over the current ThreadScope; results do not depend on its size.
+// (N). Threads: rows are split over the threads of the current ThreadScope. Results do not depend
+// on the number of threads.
 #pragma once
 
 namespace shoal::nn {
@@ -25,6 +26,8 @@ struct NormWeights {
 void LayerNormForward(const RowShape& shape, const float* x, const NormWeights& weights,
                       float* xhat, float* rstd, float* y);
 
+// Computes the gradient of x:
+//
 //   g = dy * weight
 //   dx[b, j] = rstd_b * (g[b, j] - sum_k g[b, k] / N - xhat[b, j] * sum_k g[b, k] xhat[b, k] / N)
 //
@@ -32,6 +35,8 @@ void LayerNormForward(const RowShape& shape, const float* x, const NormWeights& 
 void LayerNormBackward(const RowShape& shape, const float* dy, const NormWeights& weights,
                        const float* xhat, const float* rstd, float* dx);
 
+// Computes the gradients of weight and bias:
+//
 //   dweight_j = sum_b dy[b, j] xhat[b, j],   dbias_j = sum_b dy[b, j]
 void LayerNormBackwardWeights(const RowShape& shape, const float* dy, const float* xhat,
                               float* dweight, float* dbias);

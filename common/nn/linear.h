@@ -16,16 +16,16 @@ namespace shoal::nn {
 
 class Linear {
  public:
-  // Parameters `name`.weight (O, I) and `name`.bias (O). source: (B, I)
-  // row-major; the products are computed in its type. `source_gradient`: memory to which Backward
-  // writes dL/dx, (B, I); empty if the gradient is not needed.
+  // Parameters: `name`.weight (O, I) and `name`.bias (O). source: x (B, I) row-major; the products
+  // are computed in the type of the source. source_gradient: memory to which Backward writes dL/dx
+  // (B, I); empty if no gradient is needed.
   Linear(const LayerContext& context, const std::string& name, const dnnl::memory& source,
          const dnnl::memory& source_gradient);
 
   int outputs() const { return outputs_; }
   const float* output() const { return static_cast<const float*>(output_.get_data_handle()); }
   float* output() { return static_cast<float*>(output_.get_data_handle()); }
-  // dL/dy (B, O) f32: fill before Backward.
+  // dL/dy (B, O) f32. The caller writes it before Backward.
   float* output_gradient() { return output_gradient_.values(); }
 
   void Refresh();
@@ -39,7 +39,7 @@ class Linear {
 
   int outputs_ = 0;
   Parameter weight_, bias_;
-  dnnl::memory bias_values_;  // the parameter's array
+  dnnl::memory bias_values_;  // memory of the parameter's values
   dnnl::memory output_;       // (B, O) f32
   Rows output_gradient_;
   Relayout forward_source_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One layer of an encoder, from maps to maps. A layer borrows the memory that it reads and owns the
-// memory that it writes.
+// Base class of an encoder's layers, which read and write feature maps. A layer borrows the memory
+// that it reads and owns the memory that it writes.
 #pragma once
 
 #include "common/nn/layer_context.h"
@@ -16,8 +16,8 @@ class MapLayer {
 
   // (B, C, h, w) in the compute type.
   const dnnl::memory& output() const { return output_; }
-  // dL/doutput, with the output's description. The reader of the output writes it before Backward,
-  // which may overwrite it. Empty in inference.
+  // dL/doutput, with the same shape and layout as the output. The layer that reads the output
+  // writes this gradient before Backward. Backward may overwrite the gradient. Empty in inference.
   const dnnl::memory& output_gradient() const { return output_gradient_; }
 
   virtual void Refresh() {}

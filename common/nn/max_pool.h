@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Max pooling. The gradient is added at the largest value of a window; of equal values, at the
-// first.
+// Max pooling. The gradient of a window goes to its largest value; of equal values, to the first.
 //
 //   y[b, c, i, j] = max_{u,v} x[b, c, i*s+u-p, j*s+v-p]   over the pixels within the map
 #pragma once
@@ -11,8 +10,8 @@ namespace shoal::nn {
 
 class MaxPool final : public MapLayer {
  public:
-  // source (B, C, H, W); source_gradient: has the source's description and is overwritten; may be
-  // empty.
+  // source: (B, C, H, W). source_gradient: same shape and layout as source; overwritten, not
+  // accumulated; empty if no gradient is needed.
   MaxPool(const LayerContext& context, const LayerPlan& plan, const dnnl::memory& source,
           const dnnl::memory& source_gradient);
 

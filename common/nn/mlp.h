@@ -16,13 +16,13 @@ namespace shoal::nn {
 
 class Mlp {
  public:
-  // The plan's last layer is the output. Borrows `input`; its owner calls Rows::Commit before
-  // Forward.
+  // The plan's last layer is the output. Borrows `input`. The owner of `input` must call
+  // Rows::Commit before Forward.
   Mlp(const LayerContext& context, const NetworkPlan& plan, const Rows& input);
 
   int outputs() const { return output_->outputs(); }
   const float* output() const { return output_->output(); }  // (B, outputs)
-  // dL/dinput (B, I), after Backward with wanted.source.
+  // dL/dinput, in the shape of `input`; computed by Backward if wanted.source is set.
   const float* input_gradient() const { return input_gradient_.values(); }
 
   void Refresh();

@@ -20,12 +20,13 @@ namespace shoal::nn {
 
 class Scratchpad;
 
-// Statistics of batch normalisation. kBatch: statistics of the current batch, for a pass that a
-// backward pass follows. kRunning: averages over earlier batches, for acting and for targets.
+// Statistics of batch normalisation. kBatch: statistics of the current batch, for a forward pass
+// before a backward pass. kRunning: averages over earlier batches, for acting and for targets.
 enum class Statistics { kBatch, kRunning };
 
-// Context with which the modules of one computation are built. Copies share the scratch memory, so
-// their modules run one after another, on one thread at a time.
+// Context with which the modules of one computation are built. All copies of a context share one
+// scratch memory. Modules that were built with these copies must therefore run one after another,
+// on one thread at a time.
 struct ModuleContext {
   ModuleContext(Precision precision, int batch, int threads);
   // Context of one replica, with its share of a batch of `batch` rows and its number of threads.
@@ -39,7 +40,8 @@ struct ModuleContext {
   std::shared_ptr<Scratchpad> scratchpad;
 };
 
-// kTraining: has gradients and can be stepped by an optimiser; kInference: a target, or a policy.
+// Base class of modules. Use::kTraining: the module has gradients, and an optimiser can train it.
+// Use::kInference: the module is a target or a policy.
 class Module {
  public:
   using Use = ParameterSet::Use;
@@ -47,11 +49,11 @@ class Module {
   Module(const std::vector<ParameterSpec>& parameters, Use use, const ModuleContext& context);
   virtual ~Module() = default;
 
-  // Owned by the module. Refresh() follows any change of values.
+  // Owned by the module. Call Refresh() after every change of their values.
   ParameterSet& parameters() { return parameters_; }
   const ParameterSet& parameters() const { return parameters_; }
-  // Copies the parameters' current values into the layers. With replicas, all refresh and then meet
-  // (LaidOutWeight::Refresh).
+  // Copies the parameters' current values into the layers. With replicas, all replicas must call
+  // Refresh and then pass a barrier (LaidOutWeight::Refresh).
   virtual void Refresh() = 0;
 
  protected:
@@ -69,16 +71,20 @@ struct Following {
   Module* target;
 };
 // Computes target += tau * (online - target) for the parameters of each target (Eq. 9 of
-// docs/algorithm.md), copies statistics whole, and refreshes the targets. Replicas divide the work.
-// They meet inside this function, and must meet again before one of them uses the targets.
+// docs/algorithm.md), copies running statistics without averaging, and refreshes the targets.
+// Replicas divide the work. They pass a barrier inside this function, and must pass another barrier
+// (Replica::Meet) before any of them uses the targets.
 void MoveTowards(float tau, std::span<const Following> targets, Replica* replica);
 
-// The same for one target without replicas.
+// Does the same for one target without replicas.
 void MoveTowards(float tau, const Module& online, Module* target);
 
-// The same for a plain parameter set: a moving average that belongs to no module.
+// The next two functions are for a moving average that belongs to no module.
+//
+// Copies the parameters and statistics of `online` to `average`.
 void CopyParameters(const ParameterSet& online, ParameterSet* average);
-// Moves only this replica's share of the average; other replicas may move theirs at the same time.
+// Moves only this replica's share of the average. Other replicas may move their shares at the same
+// time.
 void MoveTowards(float tau, const ParameterSet& online, ParameterSet* average,
                  const Replica& replica);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks the memory and the message sizes that a configuration's networks need. A configuration
-// that needs too much is refused by name before anything is built or started.
+// Checks the memory and the message sizes that a configuration's networks need. These checks run
+// before any network is built and before any process is started.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ int64_t PolicyBytes(const NetworkConfig& network, const ObservationSpec& spec);
 // Throws Error (kUsage) that names the key at fault if
 //   - the encoder does not exist, does not fit the images, or keys of another encoder are set,
 //   - batch statistics would be computed from a single value,
-//   - an array of one layer for a batch has more numbers than 32 bits count,
+//   - an array of one layer for a batch has more numbers than a 32-bit integer can count,
 //   - the policy's parameters exceed `most_bytes`.
 void CheckNetwork(const NetworkConfig& network, const ObservationSpec& spec, int batch,
                   int64_t most_bytes);

@@ -3,7 +3,8 @@
 // initialisation. Shapes are computed only here. Parameters, layers, the size of a policy and the
 // checks of the configuration are derived from the plan.
 //
-// Dimensions: C channels, (H, W) of a map, N filters, O outputs, k kernel, s stride, p padding.
+// Dimensions: C channels, (H, W) of a map, N filters, I inputs, O outputs, k kernel, s stride, p
+// padding.
 //
 //   pixels        (C, H, W) u8 -> (C, H/k, W/k)           mean over k x k, scaled to a range of 1
 //   convolution   (C, H, W) -> (N, (H + 2p - k)/s + 1, ...)     weight (N, C, k, k), bias (N)
@@ -14,8 +15,8 @@
 //
 // A linear layer may be followed by LayerNorm over its outputs (norm.weight, norm.bias). A
 // convolution may be followed by batch normalisation of its channels (weight, bias, running_mean,
-// running_var, all (N)), to which the output of an earlier layer may be added. The activation comes
-// last.
+// running_var, all (N)). The output of an earlier layer may be added to the normalised map. The
+// activation is the last operation.
 #pragma once
 
 #include <cstdint>
@@ -42,13 +43,14 @@ struct ParameterSpec {
   bool statistic = false;
 };
 
-// Endings of the names of batch normalisation's running averages. No other name ends so.
+// Endings of the names of batch normalisation's running averages. No other name has such an ending.
 inline constexpr std::string_view kRunningMean = ".running_mean", kRunningVariance = ".running_var";
 
 // kOrthogonal: orthogonal weights with the layer's gain, biases 0 (Saxe et al. 2013,
-// arXiv:1312.6120). kPyTorch: the default of PyTorch's layers, weights and biases uniform within 1
-// / sqrt(inputs of one output). kKaiming: normal weights with variance 2 / (N k^2), biases 0 (He et
-// al. 2015, arXiv:1502.01852, fan-out). The weights of norms always start at 1, their biases at 0.
+// arXiv:1312.6120). kPyTorch: the default of PyTorch's layers, weights and biases uniform in [-b,
+// b] with b = 1 / sqrt(inputs of one output). kKaiming: normal weights with variance 2 / (N k^2),
+// biases 0 (He et al. 2015, arXiv:1502.01852, fan-out). The weights of norms always start at 1, the
+// biases of norms at 0.
 enum class Initialisation { kOrthogonal, kPyTorch, kKaiming };
 
 enum class Activation { kNone, kRelu, kTanh };
@@ -63,7 +65,8 @@ struct MapShape {
 // Range of scaled pixels: [-0.5, 0.5] or [0, 1].
 enum class PixelRange { kCentred, kUnit };
 
-// Values in place of a layer's index: the layer before; no layer.
+// Values in place of a layer's index. kPreviousLayer: the layer that was added last. kNoLayer: no
+// layer.
 inline constexpr int kPreviousLayer = -1, kNoLayer = -1;
 
 struct LayerPlan {
@@ -74,13 +77,13 @@ struct LayerPlan {
   std::string key;        // configuration key that sets its size
   MapShape input = {};    // linear: (I, 1, 1)
   MapShape output = {};   // linear: (O, 1, 1)
-  int source = kNoLayer;  // the layer that it reads; none: the network's input
+  int source = kNoLayer;  // layer whose output is the input; kNoLayer: the network's input
   int kernel = 1, stride = 1, padding = 0;
   double sharpness = 1;                     // spatial softmax only
   PixelRange range = PixelRange::kCentred;  // pixels only
   bool bias = true;
   bool layer_norm = false;
-  std::string batch_norm = {};  // prefix of its parameters: BATCH_NORM.weight, ...; empty: none
+  std::string batch_norm = {};  // prefix of the names BATCH_NORM.weight, ...; empty: no batch norm
   int skip = kNoLayer;          // layer whose output is added after batch normalisation
   Activation activation = Activation::kNone;
   Initialisation initialisation = Initialisation::kOrthogonal;

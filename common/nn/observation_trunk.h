@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Input of the MLPs of a head: the trunk's features beside the vector (Eq. 3 of docs/algorithm.md).
+// Input of the MLPs of a head: the trunk's outputs, then the vector (Eq. 3 of docs/algorithm.md).
 //
 //   input[b] = [ trunk(features[b]) | vector[b] | extra columns ]
 //
-// There is no trunk without pixels: input[b] = [ vector[b] | extra columns ].
+// Without pixels there is no trunk: input[b] = [ vector[b] | extra columns ].
 //
-// The input is f32 in every precision, and so is the first layer of the MLP that reads it:
-// neighbouring bf16 between 1 and 2 differ by 0.0078, which is too coarse for a position of, say,
-// 1.34 m. The layer is small: it costs less than 1 % of an update from pixels.
+// The input is f32 in every precision, and the first layer of each MLP is computed in f32. The
+// reason: neighbouring bf16 numbers between 1 and 2 differ by 0.0078, which is too coarse for a
+// position such as 1.34 m. The first layer costs less than 1 % of an update from pixels.
+//
+// Dimensions: B batch, F trunk outputs, V vector size.
 #pragma once
 
 #include <optional>
@@ -24,7 +26,8 @@ namespace shoal::nn {
 class ObservationTrunk {
  public:
   // features: output of the encoder; empty without pixels. features_gradient: memory to which
-  // Backward writes dL/dfeatures; empty if it is not needed. The caller writes the extra columns.
+  // Backward writes dL/dfeatures; empty if no gradient is needed. The caller writes the extra
+  // columns.
   ObservationTrunk(const LayerContext& context, const HeadPlan& plan, const dnnl::memory& features,
                    const dnnl::memory& features_gradient);
 
@@ -38,17 +41,17 @@ class ObservationTrunk {
   int extra_column() const { return extra_column_; }
 
   void Refresh();
-  // vector (B, V); unread when V = 0.
+  // vector: (B, V); not read if V = 0.
   void Forward(const float* vector);
-  // input_gradient: dL/dinput (B, F + V + extra), summed over all readers of the input. The
-  // gradient that a readout wrote is added once.
+  // input_gradient: dL/dinput (B, F + V + extra), summed over all readers of the input. Backward
+  // adds the gradient that a readout wrote, and then sets that gradient to 0.
   void Backward(const float* input_gradient);
 
  private:
   std::optional<DenseLayer> dense_;
   int features_, vector_size_, extra_column_;
   Rows input_;
-  std::optional<Rows> readout_gradient_;  // dL/d(trunk's outputs) (B, F); 0: none was written
+  std::optional<Rows> readout_gradient_;  // dL/d(trunk's outputs) (B, F); 0 if no readout wrote it
   std::optional<Features> own_features_;
   std::vector<float> dense_gradient_;  // (B, F)
 };

@@ -26,21 +26,22 @@ dnnl::memory::desc Plain(const dnnl::memory::dims& dims, dnnl::memory::data_type
 inline dnnl::memory::desc PlainF32(const dnnl::memory::dims& dims) {
   return Plain(dims, dnnl::memory::data_type::f32);
 }
-// Description that leaves the layout to the primitive.
+// Description that lets the primitive choose the layout.
 dnnl::memory::desc AnyLayout(const dnnl::memory::dims& dims, dnnl::memory::data_type type);
 // Zeroed memory, owned by the handle.
 dnnl::memory MakeMemory(const dnnl::memory::desc& desc);
 
-// Attributes with which every primitive is built. Scratch memory is ours, because oneDNN's own is
-// per thread, and one thread may build a network that another thread runs.
+// Attributes with which every primitive is built. Shoal provides the scratch memory, because
+// oneDNN's own scratch memory belongs to a thread, and one thread may build a network that another
+// thread runs.
 dnnl::primitive_attr Attributes();
 
 // Scratch memory that the operations of one network share, because they run one after another.
 class Scratchpad {
  public:
-  // Called while a network is built.
+  // Requests memory of at least this size. Call it while a network is built.
   void Reserve(const dnnl::memory::desc& desc);
-  // Called by the first run, which allocates the memory.
+  // Returns the memory. The first call allocates it.
   void* Data();
 
  private:
@@ -48,9 +49,9 @@ class Scratchpad {
   dnnl::memory memory_;
 };
 
-// One primitive with its arguments; empty arguments are left out. Movable; the memories are shared
-// handles. One thread at a time calls Run(), under a ThreadScope of the size in which the operation
-// was built.
+// One primitive with its arguments; arguments with empty memory are left out. Movable; the memories
+// are shared handles. One thread at a time calls Run(), under a ThreadScope of the same size as
+// during construction.
 class Op {
  public:
   Op() = default;
@@ -58,11 +59,12 @@ class Op {
   Op(const PrimitiveDesc& desc, std::initializer_list<std::pair<int, dnnl::memory>> arguments,
      std::shared_ptr<Scratchpad> scratchpad)
       : Op(dnnl::primitive(desc.get()), desc.scratchpad_desc(), arguments, std::move(scratchpad)) {}
-  // Copies `from` to `to`, changing layout and type.
+  // Whether oneDNN can copy `from` to `to`, with a change of layout and type.
   static bool CanReorder(const dnnl::memory& from, const dnnl::memory& to);
+  // Returns an operation that makes this copy.
   static Op Reorder(const dnnl::memory& from, const dnnl::memory& to,
                     std::shared_ptr<Scratchpad> scratchpad);
-  // The same for the parts of the memories that `from_part` and `to_part` describe.
+  // Does the same for the parts of the memories that `from_part` and `to_part` describe.
   static Op ReorderPart(const dnnl::memory& from, const dnnl::memory::desc& from_part,
                         const dnnl::memory& to, const dnnl::memory::desc& to_part,
                         std::shared_ptr<Scratchpad> scratchpad);
@@ -81,18 +83,19 @@ class Op {
   std::shared_ptr<Scratchpad> scratchpad_;
 };
 
-// A memory in the layout that one primitive requires, beside the memory that all other code uses.
-// If both layouts agree, both are the same memory and Run does nothing.
+// Memory in the layout that one primitive requires, and a conversion from or to the memory that all
+// other code uses. If the two layouts are equal, the two memories are the same and Run does
+// nothing.
 class Relayout {
  public:
   Relayout() = default;
   // Run() converts `source` to the layout `wanted`, before a primitive that reads memory().
   static Relayout Before(const dnnl::memory& source, const dnnl::memory::desc& wanted,
                          std::shared_ptr<Scratchpad> scratchpad);
-  // The same, but always into a copy, even if the layouts agree.
+  // Like Before, but memory() is always a copy, even if the layouts are equal.
   static Relayout Copying(const dnnl::memory& source, const dnnl::memory::desc& wanted,
                           std::shared_ptr<Scratchpad> scratchpad);
-  // The same, into `target`, which has the wanted layout.
+  // Like Before, but Run() converts into `target`, which has the wanted layout.
   static Relayout Into(const dnnl::memory& source, const dnnl::memory& target,
                        std::shared_ptr<Scratchpad> scratchpad);
   // Run() copies memory(), which a primitive wrote in the layout `produced`, to `target`.

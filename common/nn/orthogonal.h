@@ -3,7 +3,8 @@
 //
 //   Q R = G,  G (m, n) ~ N(0, 1),  W = gain * Q diag(sign R)
 //
-// W / gain is uniform over matrices with orthonormal columns (rows if W is wider than tall).
+// Q R is the QR decomposition of G. W / gain is distributed uniformly over the matrices with
+// orthonormal columns (orthonormal rows if W has more columns than rows).
 // Source: Saxe et al. 2013, arXiv:1312.6120; signs: Mezzadri 2006, arXiv:math-ph/0609050.
 #pragma once
 
@@ -13,7 +14,7 @@
 
 namespace shoal::nn {
 
-// weights (rows, cols) row-major.
+// Fills weights (rows, cols), row-major.
 void FillOrthogonal(int64_t rows, int64_t cols, double gain, Random* random, float* weights);
 
 }  // namespace shoal::nn

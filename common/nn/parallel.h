@@ -11,9 +11,9 @@ namespace shoal::nn {
 // Number of threads of networks that the calling thread builds from now on; 1 before SetThreads.
 int Threads();
 
-// Sets the pool's size for the calling thread during this object's lifetime. A network must be run
-// with the size with which it was built, because its primitives partition their work when they are
-// built.
+// Sets the pool's size for the calling thread during this object's lifetime. A network must run
+// with the same pool size as at its construction, because the primitives divide their work during
+// construction.
 class ThreadScope {
  public:
   explicit ThreadScope(int threads);
@@ -25,13 +25,13 @@ class ThreadScope {
   int former_;
 };
 
-// Splits [0, n) into one contiguous range per thread of the current scope and runs body(begin, end)
-// on each; returns when all are done. Ranges depend on n and the number of threads only. The body
-// must not throw.
+// Splits [0, n) into one contiguous range for each thread of the current scope and runs body(begin,
+// end) for each range. Returns after all ranges are done. The ranges depend only on n and on the
+// number of threads. The body must not throw.
 void ParallelFor(int n, const std::function<void(int begin, int end)>& body);
 
-// The same over an array of n values, in blocks large enough to be worth a thread: body(first,
-// count).
+// Splits an array of n values over the threads and runs body(first, count) for each part. Parts
+// consist of whole blocks, so that no thread is used for a few values only.
 template <class Body>
 void ParallelForValues(int64_t n, const Body& body) {
   constexpr int64_t kBlock = 1 << 14;

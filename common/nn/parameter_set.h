@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parameters that are trained together, in one array, so that an optimiser step is one pass. Their
-// running statistics follow them in the array.
+// Parameters that are trained together. They are in one array, so that an optimiser step is one
+// pass over this array. The running statistics follow the parameters in the array.
 #pragma once
 
 #include <array>
@@ -19,11 +19,11 @@ namespace shoal::nn {
 class ParameterSet;
 class SharedLayouts;  // laid_out_weight.h
 
-// Address of the numbers of a parameter, row-major. Null: none yet.
+// Address of the values of a parameter, row-major.
 struct PlainValues {
-  const uint8_t* data = nullptr;
-  bool bf16 = false;    // else f32
-  bool aligned = true;  // address is a multiple of the type's size
+  const uint8_t* data = nullptr;  // null: no values yet
+  bool bf16 = false;              // else f32
+  bool aligned = true;            // whether the address is a multiple of the type's size
 };
 
 // Converts `count` numbers to f32, exactly.
@@ -38,7 +38,7 @@ class Parameter {
       : set_(set), offset_(offset), spec_(spec) {}
 
   const std::vector<int64_t>& shape() const { return spec_->shape; }
-  // Whether its numbers are in the tensors that were loaded last, not in the set.
+  // Whether the parameter's values are in the tensors that were loaded last, not in the set.
   bool borrowed() const;
   // Address of the values, row-major. Every optimiser step changes the address, so do not store it.
   // Not for a borrowed parameter.
@@ -46,8 +46,8 @@ class Parameter {
   // Values of any parameter, borrowed or not. The address of borrowed values changes with every
   // load.
   PlainValues plain() const;
-  // Destination of an optimiser's step. A forward pass that measures a statistic writes its next
-  // value here. The address changes like that of value().
+  // Destination of an optimiser's step. A forward pass that measures a statistic writes the
+  // statistic's next value here. The address changes like that of value().
   float* next_value() const;
   // Address of the gradient, which never changes. Null for a statistic and in a set without
   // gradients.
@@ -65,21 +65,22 @@ class Parameter {
 
 // Owns gradients, values and a second array of values, into which an optimiser writes. Exchanging
 // the two arrays applies the step; exchanging them again undoes the step. Statistics follow the
-// trained parameters. Forward passes write statistics into the second array, so a step applies them
-// and an undo reverts them. Not movable, because layers borrow the set.
+// trained parameters. Forward passes write statistics into the second array, so a step applies new
+// statistics and an undo restores the old ones. Not movable, because layers borrow the set.
 //
-// Each parameter starts at a multiple of 16 floats; the gaps hold zeros in all arrays. A set for
-// borrowing has no room for parameters of several dimensions.
+// Each parameter starts at a multiple of 16 floats; the gaps hold zeros in all arrays. The arrays
+// of a set for borrowing contain only the parameters of one dimension.
 //
 // Replicas: the two arrays of values exist once, and each replica's set refers to them. Each set
-// stores which of the two holds the values, so every replica exchanges its own arrays. A replica
-// writes only its share of the values, and all replicas meet before one reads them.
+// stores which of the two arrays holds the values, so every replica must call Exchange on its set.
+// A replica writes only its share of the values. All replicas then pass a barrier before any of
+// them reads the values.
 class ParameterSet {
  public:
   enum class Use {
     kTraining,
     kInference,  // no gradients, no second array
-    kBorrowing,  // the same; Borrow sets the values, which only layers read and Export does not
+    kBorrowing,  // like kInference, but Borrow sets the values; Initialise and Export are forbidden
   };
 
   // `replica`: borrowed during construction; null without replicas.
@@ -87,22 +88,25 @@ class ParameterSet {
   ParameterSet(const ParameterSet&) = delete;
   ParameterSet& operator=(const ParameterSet&) = delete;
 
-  // Sets each parameter by its Start. Its random stream is keyed by seed and name.
+  // Sets each parameter as its Start describes. The random stream of a parameter depends on `seed`
+  // and on the parameter's name.
   void Initialise(uint64_t seed);
 
   const std::vector<ParameterSpec>& specs() const { return specs_; }
   bool Has(std::string_view name) const;
   // Returns the parameter `name`. CHECKs that it exists.
   Parameter Find(std::string_view name);
-  // Offset of the first parameter whose name starts with `prefix`; size() if there is none.
+  // Offset of the first parameter whose name starts with `prefix`; size() if there is no such
+  // parameter.
   int64_t OffsetOf(std::string_view prefix) const;
 
-  int64_t size() const { return size_; }  // floats, gaps included
-  // Floats without statistics: the size of the arrays of gradients and optimisers.
+  int64_t size() const { return size_; }  // number of floats, including gaps
+  // Number of floats without statistics, which is the size of the arrays of gradients and
+  // optimisers.
   int64_t trained_size() const { return trained_size_; }
   const float* values() const { return shared_->arrays[current_].data(); }
   float* values() { return shared_->arrays[current_].data(); }
-  float* next_values() { return shared_->arrays[1 - current_].data(); }  // null: there are none
+  float* next_values() { return shared_->arrays[1 - current_].data(); }  // null: no second array
   const float* gradients() const { return gradients_.data(); }
   float* gradients() { return gradients_.data(); }
   void Exchange() { current_ = 1 - current_; }
@@ -114,15 +118,14 @@ class ParameterSet {
   void Export(const float* array, const std::string& prefix, TensorMap* tensors) const;
   // Exports the values under their own names.
   void Export(TensorMap* tensors) const { Export(values(), "", tensors); }
-  // Reads F32 and BF16 tensors. Throws Error that names a missing tensor or a wrong type or shape;
-  // `array` does not change then.
+  // Reads F32 and BF16 tensors into `array`. If a tensor is missing or has a wrong type or shape,
+  // throws Error that names the tensor; `array` does not change then.
   void Import(const TensorViews& tensors, const std::string& prefix, const std::string& source,
               float* array) const;
-  // Does the same as Import for kBorrowing, with the same errors. Parameters of one dimension are
-  // copied; the others stay in `tensors`, whose bytes must live until the next call or the end of
-  // the set.
+  // Import for kBorrowing, with the same errors. Copies parameters of one dimension. The other
+  // parameters stay in `tensors`, whose bytes must live until the next call or the end of the set.
   void Borrow(const TensorViews& tensors, const std::string& source);
-  // The same for an array without statistics (Adam's moments).
+  // Export and Import for an array without statistics (Adam's moments).
   void ExportTrained(const float* array, const std::string& prefix, TensorMap* tensors) const;
   void ImportTrained(const TensorViews& tensors, const std::string& prefix,
                      const std::string& source, float* array) const;
@@ -145,7 +148,7 @@ class ParameterSet {
 
   const Use use_;
   std::vector<ParameterSpec> specs_;  // statistics last
-  size_t trained_ = 0;                // specs that are not statistics
+  size_t trained_ = 0;                // number of specs that are not statistics
   int64_t size_ = 0, trained_size_ = 0;
   std::vector<int64_t> offsets_;
   const int rank_;

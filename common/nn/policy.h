@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The policy for acting: encoder, trunk and actor MLP, forward only, and the action without
-// exploration. Exploration is the task of the actor process.
+// The policy for acting: the forward pass of encoder, trunk and actor MLP, and the action without
+// exploration. The actor process adds exploration.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ namespace shoal::nn {
 struct PolicyOutput {
   std::span<const float> mean;     // before tanh
   std::span<const float> log_std;  // log deviation; empty for a deterministic policy
-  // False: an action is not squashed by tanh, but clipped.
+  // False if actions are clipped instead of squashed by tanh.
   bool squashed = true;
 };
 
@@ -28,9 +28,9 @@ struct PolicyOutput {
 // a policy that is not squashed. CHECKs that `actions` has the size of the mean.
 void MeanActions(const PolicyOutput& output, std::span<float> actions);
 
-// Returns the kind of a policy from its tensors. A policy with a parameter for the log deviation is
-// unsquashed; a policy whose last layer has A outputs is deterministic. Load refuses missing and
-// misshaped tensors.
+// Determines the kind of a policy from its tensors. A policy with a parameter for the log deviation
+// is unsquashed. Otherwise, a policy whose last layer has A outputs is deterministic. This function
+// does not check the tensors; Policy::Load refuses missing and misshaped tensors.
 ActorOutput ActorOutputOf(const TensorViews& tensors, int action_size);
 
 class Policy {
@@ -41,15 +41,16 @@ class Policy {
 
   // Loads F32 or BF16 tensors by name; the tensors determine the kind of policy (ActorOutputOf). If
   // they include kObservationMean and kObservationVariance (actor_critic_plan.h), Forward
-  // normalises the vectors first. The policy keeps the tensors until the next load, and copies
-  // matrices and filters only into the layouts of the CPU. Throws Error that names a missing tensor
-  // or a wrong shape; the policy then keeps its former weights.
+  // normalises the vectors first. The policy keeps the tensors until the next load. Matrices and
+  // filters are copied only into the layouts that the CPU's primitives read. Throws Error that
+  // names a missing tensor or a wrong shape; the policy then keeps its former weights.
   void Load(TensorMap tensors, const std::string& source);
-  // The same for the bytes of a safetensors file, which are shared and not copied.
+  // Does the same for the bytes of a safetensors file, which are shared and not copied.
   void Load(const SharedBytes& file, const std::string& source);
 
-  // frames (B, K*C, H, W) u8 (unread without pixels), vector (B, V) f32 (unread when V = 0).
-  // 0 < B <= max_batch. The result is valid until the next call.
+  // frames: B stacks of K frames (C, H, W), (B, K*C, H, W) u8; not read without pixels. vector:
+  // (B, V) f32; not read if V = 0. B = `batch`, 0 < B <= max_batch. The result is valid until the
+  // next call.
   PolicyOutput Forward(int batch, const uint8_t* frames, const float* vector);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arithmetic of the networks' large products.
+// Number type of the networks' large matrix products.
 #pragma once
 
 #include <string>

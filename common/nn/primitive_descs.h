@@ -28,8 +28,8 @@ inline dnnl::memory::data_type TypeOf(const dnnl::memory& memory) {
   return TypeOf(memory.get_desc());
 }
 
-// Operation: dnnl::convolution_forward, ...; what: the arguments that describe it, as oneDNN lists
-// them.
+// Operation: dnnl::convolution_forward, ...; what: the arguments that describe the operation, in
+// oneDNN's order.
 template <class Operation, class... What>
 typename Operation::primitive_desc DescribeForward(const dnnl::primitive_attr& attributes,
                                                    const What&... what) {
@@ -52,7 +52,7 @@ typename Operation::primitive_desc DescribeBackward(const Forward& forward, cons
 #endif
 }
 
-// A window that is moved over maps, in pixels.
+// Window of a pooling operation, in pixels.
 struct PoolWindow {
   dnnl::memory::dims strides, kernel, padding;  // each {vertical, horizontal}
 };

@@ -20,8 +20,8 @@ class Features;
 
 class ReadoutModule final : public Module {
  public:
-  // `trunk`: trunk_features of an ActorModule or CriticModule for training; borrowed. A trunk has
-  // at most one readout.
+  // `trunk`: trunk_features() of an ActorModule or CriticModule with Use::kTraining; borrowed. A
+  // trunk has at most one readout.
   ReadoutModule(const std::string& name, int outputs, const Features& trunk,
                 const ModuleContext& context);
   ~ReadoutModule() override;

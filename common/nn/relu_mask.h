@@ -8,7 +8,7 @@ namespace shoal::nn {
 
 // y, dy: n values in the same order. Splits the work over the current ThreadScope.
 void MaskWhereZero(const float* y, int64_t n, float* dy);
-// The same on bf16.
+// Does the same for bf16.
 void MaskWhereZero(const uint16_t* y, int64_t n, uint16_t* dy);
 
 }  // namespace shoal::nn

@@ -28,7 +28,7 @@ class Rows {
 
  private:
   int batch_, columns_;
-  dnnl::memory f32_, compute_;  // one memory for both in f32 precision
+  dnnl::memory f32_, compute_;  // the same memory if the compute type is f32
 };
 
 }  // namespace shoal::nn

@@ -20,15 +20,15 @@ struct NamedTensor {
 
 using TensorMap = std::map<std::string, NamedTensor>;
 
-// A tensor whose bytes it borrows, row-major and without alignment.
+// View of a tensor. Borrows the bytes, which are row-major and may be unaligned.
 struct TensorView {
   std::string dtype;
   std::vector<int64_t> shape;
   std::span<const uint8_t> data;
 };
 
-// Parameter type of functions that read tensors: a TensorMap converts to it. Like a string_view, it
-// owns nothing.
+// Parameter type of functions that read tensors. A TensorMap converts to TensorViews. TensorViews
+// own nothing, like a string_view.
 class TensorViews {
  public:
   TensorViews() = default;
@@ -44,17 +44,19 @@ class TensorViews {
   std::map<std::string, TensorView> views_;
 };
 
-// The bytes of a file holding `tensors` and the string pairs `metadata`.
+// Returns the bytes of a file that contains `tensors` and the string pairs `metadata`.
 std::string WriteSafetensors(const TensorMap& tensors,
                              const std::map<std::string, std::string>& metadata);
 
 // `source` names the bytes in errors. Throws Error if the file is not well-formed.
 TensorMap ReadSafetensors(std::string_view bytes, const std::string& source);
-// The same, with the same checks, but without a copy of the data: the views point into `bytes`.
+// Does the same, with the same checks, but without a copy of the data: the views point into
+// `bytes`.
 TensorViews ReadSafetensorsViews(std::string_view bytes, const std::string& source);
 
-// Rounds F32 tensors to BF16 (nearest even), for messages. Running statistics, including
-// observation.*, stay F32: if a mean is large compared with its deviation, BF16 is too coarse.
+// Rounds F32 tensors to BF16 (nearest, ties to even), for messages. Running statistics, including
+// observation.*, stay F32, because BF16 is too coarse for a mean that is large compared with its
+// deviation.
 TensorMap ToBf16(TensorMap tensors);
 
 }  // namespace shoal::nn

@@ -14,10 +14,10 @@ namespace shoal::nn {
 // Barrier: each of `parties` threads waits until the last one arrives. Afterwards each thread sees
 // everything that the others wrote before.
 //
-// A waiting thread spins for 200 us, about the time by which equal parts of a task differ. Then it
-// sleeps and frees its core, because on a busy machine the awaited thread may need this core. A
-// patient barrier assumes free cores and spins for up to 2 ms, because a thread that sleeps takes
-// tens of microseconds to come back, and all others wait for it.
+// A waiting thread spins for 200 us. The durations of equal parts of a task differ by about this
+// time. Then the thread sleeps and frees its core, because on a busy machine the awaited thread may
+// need this core. A patient barrier assumes free cores and spins for up to 2 ms, because a sleeping
+// thread needs tens of microseconds to wake up, and all other threads wait for it.
 class Barrier {
  public:
   explicit Barrier(int parties, bool patient = false) : parties_(parties), patient_(patient) {}
@@ -27,15 +27,16 @@ class Barrier {
   void SetPatient(bool patient) { patient_.store(patient, std::memory_order_relaxed); }
 
  private:
-  // Separate cache lines, because waiting threads read `round_` while others arrive.
+  // The two counters are on separate cache lines, because waiting threads read `round_` while other
+  // threads arrive.
   alignas(64) std::atomic<int> arrived_{0};
   alignas(64) std::atomic<uint32_t> round_{0};
   const int parties_;
   std::atomic<bool> patient_;
 };
 
-// Runs a function on N ranks. The caller of Run is the first rank; the team's threads are the
-// others and sleep between runs.
+// Runs a function on N ranks. The thread that calls Run works as the first rank. The team's threads
+// work as the other ranks and sleep between runs.
 class Team {
  public:
   explicit Team(int ranks);
@@ -43,13 +44,13 @@ class Team {
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
 
-  // Runs body(rank) for every rank at once and returns when all are done. The body must not throw.
-  // Only one thread at a time may call Run; if the body builds or runs networks, it must always be
-  // the same thread.
+  // Runs body(rank) for all ranks in parallel and returns when all ranks are done. The body must
+  // not throw. Only one thread at a time may call Run. If the body builds or runs networks, always
+  // the same thread must call Run.
   void Run(const std::function<void(int rank)>& body);
 
-  // Whether ranks recently lost their cores to other threads while they worked: more than 0.5 times
-  // per run, averaged over about ten runs.
+  // Whether other threads recently took cores from working ranks: more than 0.5 times per run,
+  // averaged over about ten runs.
   bool crowded() const { return losses_ > 0.5; }
 
  private:
@@ -64,7 +65,7 @@ class Team {
   std::vector<Losses> losses_of_rank_;
   double losses_ = 0;                               // per run, averaged
   const std::function<void(int)>* body_ = nullptr;  // null: the threads end
-  std::vector<std::thread> threads_;                // last: they use the others
+  std::vector<std::thread> threads_;                // last, because they use the other members
 };
 
 }  // namespace shoal::nn

@@ -24,7 +24,7 @@ class VectorScale {
   // Scales x (B, V) into y (B, V); the size of y gives B. y may be x.
   void Apply(const float* x, std::span<float> y) const;
 
-  // (V): y = clip((x - mean) * factor, -kLimit, kLimit).
+  // y = clip((x - mean) * factor, -kLimit, kLimit), with mean and factor (V).
   static constexpr float kLimit = 10;
   std::span<const float> mean() const { return mean_; }
   std::span<const float> factor() const { return factor_; }
@@ -33,8 +33,8 @@ class VectorScale {
   std::vector<float> mean_, factor_;  // (V)
 };
 
-// Reads the scale from a policy's tensors (kObservationMean, kObservationVariance); empty if there
-// is none. Throws Error naming a missing tensor or a wrong type or shape.
+// Reads the scale from a policy's tensors (kObservationMean, kObservationVariance). Empty if the
+// policy has no scale. Throws Error naming a missing tensor or a wrong type or shape.
 std::optional<VectorScale> ReadVectorScale(const TensorViews& tensors, int vector_size,
                                            const std::string& source);
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// policy.json of a checkpoint, schema shoal-policy-1: everything except parameters that acting by
-// the policy needs, so that the checkpoint's folder is self-contained.
+// policy.json of a checkpoint, schema shoal-policy-1. The file contains all that a program needs to
+// act by the policy, except the parameters, so that the checkpoint's folder is self-contained.
 //
-//   version      of the Shoal that wrote it
+//   version      version of Shoal that wrote the file
 //   algorithm    learner.algorithm
 //   output       gaussian | deterministic | unsquashed: meaning of the actor's last layer
 //   network      the configuration keys network.*
 //   spec         the observation spec, spec_hash its hash
-//   layers       what the network computes, a line per layer (common/nn/plan_text.h)
+//   layers       computation of the network, one line for each layer (common/nn/plan_text.h)
 //
 // Parameters and running normalisation are in policy.safetensors. `layers` is derived from the
-// members above. If a program derives other layers, it refuses the checkpoint.
+// members above. A program that derives other layers from these members refuses the checkpoint.
 #pragma once
 
 #include <string>
@@ -31,16 +31,16 @@ struct PolicyDescription {
   nn::ActorPlan Actor() const { return nn::PlanActor(network, spec, output); }
 };
 
-// The description of a run's policy, by this program's version.
+// The description of a run's policy. `version` is the version of this program.
 PolicyDescription Describe(const Config& config, const ObservationSpec& spec,
                            nn::ActorOutput output);
 
 // The bytes of policy.json.
 std::string WriteDescription(const PolicyDescription& description);
 
-// `source` names the text in errors. Throws Error in one line: another or a newer schema, a missing
-// or ill-typed key, a spec that makes no sense, a network that this program does not have or that
-// computes something else here.
+// `source` names the text in errors. Throws Error, in one line, if the schema is unknown, if a key
+// is missing or ill-typed, if the spec is invalid, or if this program does not have the network or
+// has a network of the same name that computes something else.
 PolicyDescription ReadDescription(const std::string& text, const std::string& source);
 
 }  // namespace shoal::policy

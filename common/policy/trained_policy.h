@@ -3,7 +3,8 @@
 // would take for a batch of observations.
 //
 // Dimensions: N observations of a batch, K frames of a stack, C channels of a frame (all cameras),
-// I = K*C, or (K+1)*C with a goal picture, H, W, A actions. Arrays are row-major.
+// (H, W) height and width of a frame, I input channels (K*C, or (K+1)*C with a goal picture), V
+// numbers of the observed blocks, A actions. Arrays are row-major.
 #pragma once
 
 #include <cstdint>
@@ -27,19 +28,20 @@ struct ObservedBlock {
 // N observations, borrowed for a call.
 struct Observations {
   int count = 0;  // N
-  // (N, I, H, W), row 0 = top. The frames of a stack are in order, oldest first; at an episode's
-  // start, the first frame is repeated K times. A goal picture is last. A policy without pixels
-  // ignores this member.
+  // (N, I, H, W), row 0 = top. The frames of a stack are ordered, oldest first; at an episode's
+  // start, the first frame is repeated K times. A goal picture follows the stack. A policy without
+  // pixels ignores this member.
   std::span<const uint8_t> pixels = {};
   // All blocks that the policy observes, in any order, and no other blocks.
   std::span<const ObservedBlock> blocks = {};
 };
 
-// One thread at a time; objects are independent of each other. Computes on the calling thread.
+// Only one thread at a time may use an object; objects are independent of each other. All
+// computation is on the calling thread.
 class TrainedPolicy {
  public:
-  // Builds the network for one observation. Networks for batches are built when they are first
-  // needed. Throws Error if the parameters do not fit the description.
+  // Builds the network for one observation. Networks for batches are built at their first use.
+  // Throws Error if the parameters do not fit the description.
   explicit TrainedPolicy(const CheckpointPolicy& policy,
                          nn::Precision precision = nn::Precision::kF32);
   // Reads the checkpoint as ReadCheckpointPolicy does, and throws the same errors.
@@ -49,9 +51,10 @@ class TrainedPolicy {
   const PolicyDescription& description() const { return description_; }
   const ObservationSpec& spec() const { return description_.spec; }
 
-  // Writes actions (N, A), each in [-1, 1]. An action is the same to f32's last digits whatever N.
-  // Throws Error in one line. kUsage: an array has the wrong size, or a block is missing, unknown
-  // or given twice. kNonFinite: a block or the policy's output has a number that is not finite.
+  // Writes actions (N, A), each in [-1, 1]. The other observations of the batch can change an
+  // action only in the last digits of f32. Throws Error in one line. kUsage: an array has the wrong
+  // size, or a block is missing, unknown or given twice. kNonFinite: a block or the policy's output
+  // has a number that is not finite.
   void Act(const Observations& observations, std::span<float> actions);
 
  private:

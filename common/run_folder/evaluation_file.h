@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // eval/*.json of a run (schema shoal-eval-1): one evaluation of a policy, episode by episode. The
-// process that plays the episodes makes the file; the coordinator adds wall_seconds to evaluations
-// of its run. The coordinator of a resumed run, reports and experiments read the files.
+// process that plays the episodes writes the file. The coordinator adds wall_seconds to the
+// evaluations of its run. Readers are the coordinator of a resumed run, reports and experiments.
 //
 //   {schema, task, policy, checkpoint, weights_version: {session, update}, env_steps,
 //    deterministic, cameras, seeds: [seed], stream: {role, group},
@@ -16,7 +16,7 @@
 // a policy without parameters. The following members are optional:
 //
 //   desired_goal, achieved_goal, failure, failures   if the task has causes of failure; `failure`
-//                     is null for a success
+//                     is null for a successful episode
 //   body_mass         for randomized episodes
 //   fault             (diverged, observation, reward) for a faulty episode, which failed because a
 //                     number of the simulation was not finite
@@ -46,10 +46,10 @@ struct EvaluatedEpisode {
   // The goal, and the achieved goal at the end, in m; for tasks that have causes of failure.
   struct Goal {
     std::vector<double> desired, achieved;
-    std::string failure{};  // empty = none
+    std::string failure{};  // cause of failure; empty for a successful episode
   };
   std::optional<Goal> goal{};
-  std::string fault{};  // why a faulty episode ended; empty = it was not faulty
+  std::string fault{};  // why a faulty episode ended; empty for other episodes
   std::vector<std::pair<std::string, double>> body_mass_kg{};
 };
 
@@ -63,14 +63,15 @@ struct EvaluationAggregate {
   size_t faulty_episodes = 0;                   // counted in `episodes`, as failed
 };
 
-// "  3 of 50 episodes ended at a number that is not finite and count as failed\n"; empty if no
-// episode was faulty.
+// The line "  3 of 50 episodes ended at a number that is not finite and count as failed\n"; empty
+// if no episode was faulty.
 std::string FaultyEpisodesText(const EvaluationAggregate& aggregate);
 
 // The part of an evaluation that programs read.
 struct EvaluationSummary {
   std::string task{};
-  // The folder's name, and the version of the parameters; for the policy of a checkpoint only.
+  // Name of the checkpoint's folder, and version of the parameters. Empty unless the policy is that
+  // of a checkpoint.
   struct Version {
     uint64_t session = 0, update = 0;
   };
@@ -106,7 +107,7 @@ nlohmann::ordered_json ToJson(const EvaluationFile& file);
 nlohmann::ordered_json ParseEvaluationObject(const std::string& text, const std::string& source);
 
 // Throws Error naming `source` and the member if a member is missing or has another type. Does not
-// check whether the figures are plausible.
+// check whether the numbers are plausible.
 EvaluationSummary SummaryOf(const nlohmann::ordered_json& evaluation, const std::string& source);
 
 void SetWallSeconds(double wall_seconds, nlohmann::ordered_json* evaluation);

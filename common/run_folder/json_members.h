@@ -14,7 +14,7 @@
 
 namespace shoal {
 
-// An object of this schema; `file` names the text in errors.
+// Parses an object of this schema. `file` names the text in errors.
 inline nlohmann::ordered_json ParseSchemaObject(const std::string& text, const std::string& file,
                                                 const char* schema) {
   auto object = ParseBoundedJson<nlohmann::ordered_json>(text);
@@ -27,7 +27,7 @@ inline nlohmann::ordered_json ParseSchemaObject(const std::string& text, const s
 // Borrows the object. The functions "...IfAny" return empty if the member is absent or null.
 class JsonMembers {
  public:
-  // `path`: the object's place in the file, "" or "aggregate.".
+  // `path`: the object's place in the file: "" for the whole file, or for example "aggregate.".
   JsonMembers(const nlohmann::ordered_json& object, std::string file, std::string path = "")
       : object_(object), file_(std::move(file)), path_(std::move(path)) {
     if (!object.is_object()) {
@@ -48,7 +48,7 @@ class JsonMembers {
   const nlohmann::ordered_json& List(const char* key) const {
     return Checked(key, At(key).is_array(), "a list");
   }
-  // The object at a place of a list.
+  // The object at index `place` of a list.
   JsonMembers ObjectOf(const char* list, size_t place) const {
     return {List(list).at(place), file_, fmt::format("{}{}[{}].", path_, list, place)};
   }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts of the updates that a run's learners have done and lost, in a mapped file that survives
-// SIGKILL of the learner (not power loss). Updates that the page counts and no checkpoint has were
-// lost with the process, including its last one.
+// Counts of the updates that a run's learners made, and of the updates that were lost. The counts
+// are in a mapped file that survives SIGKILL of the learner (not power loss). If a learner dies,
+// the updates that its page counts but no checkpoint contains are lost.
 //
-// File RUN/learner.page: UpdatePageContent. The count of lost updates covers learners that have a
-// successor; those of the last learner are added when the run is resumed.
+// File RUN/learner.page: UpdatePageContent. When a learner starts, it adds the lost updates of the
+// previous learner.
 #pragma once
 
 #include <cstdint>
@@ -14,23 +14,24 @@ namespace shoal {
 
 struct UpdatePageContent {
   char magic[8];  // "SHOALUP1"
-  uint64_t done;  // by the present learner, those of its checkpoint included
-  uint64_t lost;  // with its predecessors
+  uint64_t done;  // number of updates in the present learner's weights
+  uint64_t lost;  // updates that were lost with earlier learners
 };
 static_assert(sizeof(UpdatePageContent) == 24);
 
-// Owns the mapping. One thread, one learner per run.
+// Owns the mapping. Only one thread may use the page, and only one learner in each run.
 class UpdatePage {
  public:
-  // Makes the run's page, or continues it: the updates of its last learner beyond `restored`, the
-  // updates of the checkpoint that this learner starts from, are lost. Throws Error if the folder
-  // cannot be written or the file is no such page.
+  // Makes the run's page, or continues an existing page. `restored`: number of updates of the
+  // checkpoint from which this learner starts; the previous learner's updates beyond this number
+  // are counted as lost. Throws Error if the folder cannot be written or the file is not such a
+  // page.
   UpdatePage(const std::filesystem::path& run, uint64_t restored);
   ~UpdatePage();
   UpdatePage(const UpdatePage&) = delete;
   UpdatePage& operator=(const UpdatePage&) = delete;
 
-  // Call after each update.
+  // Call this function after each update.
   void SetDone(uint64_t updates);
   uint64_t lost() const { return content_->lost; }
 
@@ -38,11 +39,11 @@ class UpdatePage {
   UpdatePageContent* content_ = nullptr;
 };
 
-// Replaces a damaged page by counts from other sources.
+// Replaces a damaged page by a page with these counts, which come from other files.
 void RebuildUpdatePage(const std::filesystem::path& run, uint64_t done, uint64_t lost);
 
-// Updates lost in a run so far; 0 before the first learner. Throws Error when the file is no
-// such page.
+// Number of updates lost in a run so far; 0 before the first learner. Throws Error if the file is
+// not such a page.
 uint64_t ReadLostUpdates(const std::filesystem::path& run);
 
 }  // namespace shoal

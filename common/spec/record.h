@@ -5,11 +5,13 @@
 //   RecordHeader (80 bytes) | action (A) f32 | drawn action (A or 0) f32 | vector (R) f32
 //   | frame (C, H, W) u8 | pad to 8
 //
-// A *reset* record holds the first observation of an episode (action and reward are zero). A *step*
-// record holds the action taken, its reward, and the observation after it. If the policy sees a
-// goal picture, a *goal* record precedes each reset: its frame is that picture, all else is the
-// reset's. The vector has every block of the spec, observed or not. The drawn action is present if
-// the spec says so. All little-endian. docs/wire_format.md describes the layout byte by byte.
+// A *reset* record contains the first observation of an episode; action and reward are zero. A
+// *step* record contains the action, its reward, and the observation after the action. If the
+// policy observes a goal picture, a *goal* record precedes each reset record. The frame of the goal
+// record is the goal picture; the other fields are the same as in the reset record. The vector
+// contains every block of the spec, observed or not. The drawn action is present if the spec has
+// drawn_actions. All numbers are little-endian. docs/wire_format.md describes the layout byte by
+// byte.
 #pragma once
 
 #include <cstdint>
@@ -30,20 +32,20 @@ enum RecordFlags : uint8_t {
 };
 
 struct RecordHeader {
-  uint64_t sequence;         // per (actor, session), from 1, without holes
-  uint64_t weights_session;  // policy that chose the action; 0 = uniform random
-  uint64_t weights_update;
-  int64_t time_ns;   // wall clock when made
-  uint32_t env;      // global environment index: the same env whichever actor hosts it
+  uint64_t sequence;         // per (actor, session), from 1, without gaps
+  uint64_t weights_session;  // session of the weights that chose the action; 0 = uniform random
+  uint64_t weights_update;   // update of these weights
+  int64_t time_ns;           // wall time at which the record was made
+  uint32_t env;      // global index of the environment; does not depend on the actor that runs it
   uint32_t episode;  // per env, from 0, never re-used within a run
-  uint32_t index;    // 0 = reset, goal; k = after the k-th step
+  uint32_t index;    // 0 = reset or goal record; k = record of the k-th step
   float reward;
-  float distance;  // task's goal distance in m after this record; NaN where it has no meaning
+  float distance;  // distance to the goal in m in this observation; NaN if the task has none
   RecordKind kind;
   uint8_t flags;  // RecordFlags
   uint8_t version;
   uint8_t reserved;
-  float log_prob;  // of the drawn action under the policy that chose it; 0 without drawn actions
+  float log_prob;  // log-probability of the drawn action under its policy; 0 without drawn actions
   uint32_t reserved_words[5];
 };
 static_assert(sizeof(RecordHeader) == 80);
@@ -61,7 +63,8 @@ class RecordLayout {
   // Size of one record, a multiple of 8.
   int record_bytes() const { return record_bytes_; }
 
-  // Views into a record of record_bytes(), aligned to 8. They borrow it.
+  // The functions below return views into a record of record_bytes() bytes, aligned to 8 bytes. The
+  // views borrow the record.
   static RecordHeader& Header(uint8_t* record) { return *reinterpret_cast<RecordHeader*>(record); }
   static const RecordHeader& Header(const uint8_t* record) {
     return *reinterpret_cast<const RecordHeader*>(record);
@@ -72,7 +75,7 @@ class RecordLayout {
   std::span<const float> Action(const uint8_t* record) const {
     return {reinterpret_cast<const float*>(record + sizeof(RecordHeader)), size_t(action_size_)};
   }
-  // The drawn action, before it was clipped; empty if the spec has no drawn actions.
+  // The drawn action before clipping; empty if the spec has no drawn actions.
   std::span<float> DrawnAction(uint8_t* record) const {
     return {reinterpret_cast<float*>(record + drawn_offset_), size_t(drawn_size_)};
   }
@@ -97,9 +100,10 @@ class RecordLayout {
   int drawn_offset_, vector_offset_, frame_offset_, record_bytes_;
 };
 
-// The fault of a received record, or nullptr. Checks version, kind, index/kind agreement,
-// unknown flags, non-finite reward or log-probability, action outside [-1, 1], non-finite drawn
-// action or vector.
+// Returns the fault of a received record as text, or nullptr if the record is valid. Faults: a
+// wrong version or kind, an index that does not fit the kind, unknown flags, a reward or
+// log-probability that is not finite, an action outside [-1, 1], a drawn action or vector that is
+// not finite.
 const char* RecordFault(const RecordLayout& layout, const uint8_t* record);
 
 }  // namespace shoal

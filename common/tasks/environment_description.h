@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// An environment that is not one of Shoal's worlds, as data: its observation, its action and how
-// its episodes end. The process that runs the environment writes it (shoal-environment-1). It
-// travels as text in ObservationSpec::environment, so the specification's hash covers it, and every
-// process of a run derives the goal half of the task from it. No process but the actors runs code
-// of the environment.
+// JSON description (shoal-environment-1) of an environment that is not one of Shoal's worlds: its
+// observation, its action and how its episodes end. The process that runs the environment writes
+// the description. ObservationSpec::environment contains the description as text, so the spec's
+// hash includes it. Every process of a run derives the goal half of the task from this text. Only
+// the actors run code of the environment.
 //
 //   {"schema": "shoal-environment-1", "id": "Pendulum-v1", "task": "Pendulum-v1",
 //    "episode_steps": 200,                                 0 = no time limit
 //    "action": {"shape": [1], "dtype": "float32", "low": [-2.0], "high": [2.0]},
 //    "observation": [{"name": "observation", "shape": [3], "dtype": "float32", "low": [...], ...}],
-//    "success": false,                                     steps report is_success
+//    "success": false,                                     whether steps report is_success
 //    "goal": {"reward": "sparse", "threshold": 0.05}}      only if verified (shoal env check)
 //
 // A bound is a list with one number for each element, or a single number for all of them; null is
@@ -29,42 +29,48 @@ namespace shoal::tasks {
 
 inline constexpr char kEnvironmentSchema[] = "shoal-environment-1";
 
-// NumPy's name of the type, "float32", and its size.
+// NumPy's name of an element type, such as "float32", and the size of an element in bytes.
 const char* NameOf(ElementType type);
 size_t BytesOf(ElementType type);
 
-// How an image is laid out in an array of uint8.
+// Layout of an image in an array of uint8.
 struct ImageLayout {
   int height = 0, width = 0, channels = 0;
-  bool channels_first = false;  // C x H x W; else H x W x C, or H x W with one channel
+  // True: channels x height x width. False: height x width x channels, or height x width if there
+  // is one channel.
+  bool channels_first = false;
 
   bool operator==(const ImageLayout&) const = default;
 };
 
-// Empty if the array is no image: images are uint8 with two or three dimensions, 1 or 3 channels
-// and at least 8 pixels a side. Throws Error (kUsage) for a uint8 array of three dimensions that is
-// nearly one, such as a stack of frames.
+// Returns the layout of an image, or empty if the array is not an image. An image is an array of
+// uint8 with two or three dimensions, 1 or 3 channels and at least 8 pixels on each side. Throws
+// Error (kUsage) for a uint8 array of three dimensions that resembles an image, such as a stack of
+// frames.
 std::optional<ImageLayout> ImageLayoutOf(const ArraySpace& space);
 
-// The name within Shoal of the environment that env.id names: "Pendulum-v1", "ALE-Pong-v5",
-// "catch_light.CatchLight" of "./catch_light.py:CatchLight". A name that one of Shoal's tasks has
-// gets a prefix.
+// The task name in Shoal for an environment. `id`: value of the key env.id. Examples:
+// "Pendulum-v1", "ALE-Pong-v5", "catch_light.CatchLight" for "./catch_light.py:CatchLight". If one
+// of Shoal's tasks already has this name, a prefix is added.
 std::string TaskNameOf(const std::string& id);
 
-// The library of an environment in C++: "/home/me/catch_light.so" of
-// "/home/me/catch_light.so:CatchLight"; empty for an environment of Python.
+// The library of a C++ environment: "/home/me/catch_light.so" for
+// "/home/me/catch_light.so:CatchLight". Empty for a Python environment.
 std::string LibraryOf(const std::string& id);
 
-// Throws Error (kUsage) naming what is missing, ill-typed or cannot be trained on: an action
-// without finite bounds, two blocks of one name.
+// Throws Error (kUsage) that names a member that is missing or ill-typed, or the reason why the
+// environment is not trainable: for example, an action without finite bounds, or two blocks with
+// the same name.
 EnvironmentDescription EnvironmentFromJson(const nlohmann::json& object);
 nlohmann::json ToJson(const EnvironmentDescription& environment);
 
-// The goal half of its task. Images are no part of it. Throws Error (kUsage): task_check.h.
+// The goal half of the environment's task. It does not include images. Throws the errors of
+// task_check.h.
 Task TaskOf(const EnvironmentDescription& environment);
 
-// Adds the task of a specification's `environment` text to the registry (task_registry.h), once;
-// an empty text has none. At the start of a program, before threads. Throws Error.
+// Adds the task of an environment to the registry (task_registry.h), unless the task was added
+// before. `environment`: text of ObservationSpec::environment; nothing is added if it is empty.
+// Call this function at the start of a program, before other threads exist. Throws Error.
 void AddEnvironmentTask(const std::string& environment);
 
 }  // namespace shoal::tasks

@@ -40,7 +40,7 @@ struct ArraySpace {
   bool operator==(const ArraySpace&) const = default;
 };
 
-// Rewards that Shoal can compute for other goals.
+// Reward of a goal environment that Shoal can compute for other goals too.
 struct VerifiedGoal {
   RewardKind reward = RewardKind::kSparse;
   double threshold = 0;
@@ -49,18 +49,18 @@ struct VerifiedGoal {
 };
 
 struct EnvironmentDescription {
-  std::string id;         // as the user names it: "Pendulum-v1", "/home/me/my_env.py:MyEnv"
-  std::string task;       // its name within Shoal
+  std::string id;         // value of env.id: "Pendulum-v1", "/home/me/my_env.py:MyEnv"
+  std::string task;       // name of the task in Shoal
   int episode_steps = 0;  // 0 = no time limit
   ArraySpace action;
   std::vector<ArraySpace> observation;
-  bool success = false;                // steps report whether the goal is reached
-  std::optional<VerifiedGoal> goal{};  // of a goal environment whose rewards Shoal can compute
-  std::string no_goal{};               // why `goal` is empty; empty if it has no goals at all
+  bool success = false;                // whether steps report success
+  std::optional<VerifiedGoal> goal{};  // empty unless Shoal can compute the rewards
+  std::string no_goal{};               // reason why `goal` is empty; empty if there are no goals
 
   const ArraySpace* Find(const std::string& name) const;
-  // Copies the members that are known only after playing or checking the environment: success,
-  // goal, no_goal.
+  // Copies from `of` the members that are known only after the environment was played or checked:
+  // success, goal, no_goal.
   void TakeFindings(const EnvironmentDescription& of);
   bool operator==(const EnvironmentDescription&) const = default;
 };

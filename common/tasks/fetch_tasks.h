@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Goal halves of the Fetch tasks.
+// Goal halves (task.h) of the Fetch tasks.
 #pragma once
 
 #include <vector>
@@ -8,9 +8,10 @@
 
 namespace shoal::tasks {
 
-// FetchReach, FetchPush, FetchSlide and FetchPickAndPlace, each also as ...Dense. The achieved goal
-// is the position of the grip site in Reach, of the object in the others; reached within 5 cm; 50
-// env steps an episode.
+// FetchReach, FetchPush, FetchSlide, FetchPickAndPlace, and the same tasks with dense rewards
+// (FetchReachDense, ...). The achieved goal is the position of the grip site in Reach and the
+// position of the object in the other tasks. A goal is reached if the distance is below 5 cm. An
+// episode has 50 env steps.
 std::vector<Task> FetchTasks();
 
 }  // namespace shoal::tasks

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Goal halves of the Hopper tasks.
+// Goal halves (task.h) of the Hopper tasks.
 #pragma once
 
 #include <vector>
@@ -8,9 +8,10 @@
 
 namespace shoal::tasks {
 
-// Hopper-v4 and Hopper-v5 (1000 control steps; v5 pays for being upright only while upright), and
-// the pair CustomHopper-source and CustomHopper-target for sim-to-sim transfer (500 control steps;
-// the source's torso is one kilogram lighter). No goals.
+// Hopper-v4 and Hopper-v5 have 1000 control steps; in v5, the reward for being upright is paid only
+// while the hopper is upright. CustomHopper-source and CustomHopper-target, a pair for sim-to-sim
+// transfer, have 500 control steps; the torso of the source is one kilogram lighter. The tasks have
+// no goals.
 std::vector<Task> HopperTasks();
 
 }  // namespace shoal::tasks

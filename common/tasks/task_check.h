@@ -6,20 +6,23 @@
 
 namespace shoal::tasks {
 
-inline constexpr int kMostNumbers = 65'536;  // of a state vector or a goal
-inline constexpr int kMostActions = 1'024;   // components of an action
+inline constexpr int kMostNumbers = 65'536;  // limit for a state vector, and for a goal
+inline constexpr int kMostActions = 1'024;   // limit for the components of an action
 
-// Throws Error (kUsage), in one line that names the task and the block: names that are empty, taken
-// twice or no identifiers; blocks without numbers or with too many; bounds that are NaN or in the
-// wrong order; goals of different size; a length, an action repeat or a threshold that makes no
-// sense.
+// Throws Error (kUsage), in one line that names the task and the block, for
+//   - names that are empty, used twice or not valid,
+//   - blocks without numbers or with too many numbers,
+//   - bounds that are NaN or in the wrong order,
+//   - an achieved goal and a desired goal of different size,
+//   - an invalid length, action repeat or threshold.
 //
-// A block's name becomes an array of exports, a key of files and part of "BLOCK-BLOCK" in
-// sac.aux: letters, digits, underscores and dots, beginning with a letter or an underscore, not
-// ending with a dot, at most 64.
+// A block's name has at most 64 characters: letters, digits, underscores and dots. It begins with a
+// letter or an underscore and does not end with a dot. The reason: the name is used as the name of
+// an array in exports, as a key in files and as a part of "BLOCK-BLOCK" in sac.aux.
 void CheckDescription(const Task::Description& description);
 
-// Checks that a task can be trained: it has an action and a physics half. Errors as above.
+// Checks that a task can be trained: the task must have an action and a physics half. Throws Error
+// (kUsage) that names the task.
 void CheckPlayable(const Task& task);
 
 }  // namespace shoal::tasks

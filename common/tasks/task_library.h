@@ -11,20 +11,22 @@
 // The shared objects use the functions of the program that loads them. They must be built from the
 // same sources with the same compiler.
 //
-// Load them at the start of a program, before threads. Throws Error (kUsage), in one line that
-// names the file, if the file cannot be loaded, it lacks its entry point, or the entry point throws
-// (for example, because a name is taken or a description is invalid).
+// Load task libraries at the start of a program, before other threads exist. The functions throw
+// Error (kUsage), in one line that names the file, if the file cannot be loaded, if the file has no
+// entry point, or if the entry point throws (for example, because a name is taken or a description
+// is invalid).
 #pragma once
 
 #include <string>
 
 namespace shoal::tasks {
 
-// Loads the goal halves of NAME.so. Does nothing if the path is empty or the library is loaded.
+// Loads the goal halves of NAME.so. Does nothing if the path is empty or if the library is already
+// loaded.
 void LoadTaskLibrary(const std::string& path);
 
-// The function that a shared object must define, and two names for messages: the configuration key
-// of the file and the page about it.
+// Name of the function that a shared object must define, and two names for messages: the
+// configuration key that contains the path of the file, and the page of the documentation.
 struct EntryPoint {
   const char* function;
   const char* key = "task_library";

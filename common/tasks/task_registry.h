@@ -10,20 +10,20 @@
 
 namespace shoal::tasks {
 
-// The task with this name; valid as long as the process runs. Throws Error (kUsage) listing the
-// known tasks.
+// The task with this name. The reference is valid as long as the process runs. If there is no such
+// task, throws Error (kUsage) that lists the known tasks.
 const Task& FindTask(const std::string& name);
 
-// The same task with this distance_threshold (m) in place of its own, unless that is 0. Throws
-// Error (kUsage) also when the task has no goals.
+// The same task with this distance_threshold (m); 0 keeps the task's own threshold. Throws the same
+// error, and Error (kUsage) if a threshold is given but the task has no goals.
 Task FindTask(const std::string& name, double distance_threshold);
 
 // The names of all tasks, in the order of registration.
 std::vector<std::string> TaskNames();
 
-// Adds a task; references to other tasks stay valid. Call at the start of a program, before
-// threads. Throws Error (kUsage) when the name is taken, or when the task has no action or no
-// physics half.
+// Adds a task. References to other tasks stay valid. Call this function at the start of a program,
+// before other threads exist. Throws Error (kUsage) if the name is taken, or if the task has no
+// action or no physics half.
 void AddTask(Task task);
 
 }  // namespace shoal::tasks

@@ -7,11 +7,11 @@
 
 namespace shoal::tensorboard {
 
-// Crc32c("123456789") = 0xe3069283.
+// Example: Crc32c("123456789") = 0xe3069283.
 uint32_t Crc32c(std::string_view bytes);
 
-// TFRecord stores checksums rotated and offset, so that a CRC of data holding CRCs stays a good
-// one.
+// Converts a checksum to the form that TFRecord files store: rotated and with an offset. The
+// reason: a CRC of data that itself contains plain CRCs detects errors less well.
 constexpr uint32_t MaskCrc(uint32_t crc) { return ((crc >> 15) | (crc << 17)) + 0xa282ead8u; }
 
 }  // namespace shoal::tensorboard

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scalars, texts, images and hyper-parameters as a TensorBoard event file.
+// Writes scalars, texts, images and hyper-parameters to a TensorBoard event file.
 //
-// The file is FOLDER/events.out.tfevents.SECONDS.HOST.PID.NUMBER, a sequence of TFRecords of Event
-// messages. TensorBoard follows the newest file of a folder only, so one process at a time writes
-// there.
+// The file FOLDER/events.out.tfevents.SECONDS.HOST.PID.NUMBER is a sequence of TFRecords with Event
+// messages. TensorBoard follows only the newest file of a folder, so only one process at a time may
+// write event files to a folder.
 //
-// Records are kept in memory until Flush. A file always ends at a record's end, unless the
-// process dies within a write or the disk is full; readers ignore such a tail. Threads: one at a
-// time. Errors: Error naming the file when it cannot be made or flushed.
+// Records are kept in memory until Flush. After a Flush the file ends with a complete record. Only
+// if the process dies during a write, or if the disk is full, the file may end with a part of a
+// record; readers ignore this part. Threads: one at a time. Throws Error naming the file if the
+// file cannot be made or flushed.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +27,7 @@ class EventWriter {
  public:
   // Makes the folder and a new file in it.
   explicit EventWriter(const std::filesystem::path& folder);
-  // Writes what is pending; a failure is logged.
+  // Writes the pending events. A failure is logged.
   ~EventWriter();
   EventWriter(const EventWriter&) = delete;
   EventWriter& operator=(const EventWriter&) = delete;
@@ -37,11 +38,13 @@ class EventWriter {
   void Text(const std::string& tag, const std::string& markdown);
   // An RGB image of `width` x `height` pixels as a PNG file's bytes, for the images tab.
   void Image(const std::string& tag, int64_t step, int width, int height, const std::string& png);
-  // Begins one line of the hparams tab, with the settings by name.
+  // Begins one line of the hparams tab. `settings`: hyper-parameters by name.
   void BeginSession(const std::map<std::string, HyperParameter>& settings);
+  // Ends this line, as successful or as failed.
   void EndSession(bool success);
-  // Writes the pending events. Throws Error when the file cannot be written now; a later call
-  // continues where this call failed. Meanwhile, events beyond kMostPending bytes are dropped.
+  // Writes the pending events. Throws Error if the file cannot be written now; a later call
+  // continues where this call failed. If more than kMostPending bytes are pending, further events
+  // are dropped.
   void Flush();
 
   static constexpr size_t kMostPending = 32 * 1024 * 1024;

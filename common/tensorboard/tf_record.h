@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // TFRecord framing of one payload:
 //
-//   u64 LE length | u32 LE masked CRC-32C of these 8 bytes | payload | u32 LE masked CRC-32C of it
+//   u64 LE length | u32 LE masked CRC-32C of the length | payload
+//   | u32 LE masked CRC-32C of the payload
 //
 // Source: tensorflow/core/lib/io/record_writer.h.
 #pragma once

@@ -1,37 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
 // Layout of a batch: named arrays, each with a type and a shape, one after another. Each array
-// starts at a multiple of 64 bytes. Learner and replay make the schema from the same observation
-// spec and options. Every request carries the schema's hash, so that the learner never misreads a
-// batch with another layout.
+// starts at a multiple of 64 bytes. Learner and replay each make the schema from the same
+// observation spec and the same options. Every request contains the schema's hash, so that the
+// learner never reads a batch of another layout.
 //
 //   obs_frames       (B, K*C, H, W) u8   shifted (DrQ), frames of a stack oldest first
-//   next_obs_frames  (B, K*C, H, W) u8   shifted with offsets of their own
+//   next_obs_frames  (B, K*C, H, W) u8   shifted by other offsets than obs_frames
 //   obs_vector       (B, V) f32
 //   next_obs_vector  (B, V) f32
-//   obs_privileged       (B, P) f32      recorded blocks that acting does not see, in record order
+//   obs_privileged       (B, P) f32      privileged blocks (BatchOptions::privileged), record order
 //   next_obs_privileged  (B, P) f32
 //   action           (B, A) f32
 //   reward           (B) f32             discounted sum over the sample's n steps
-//   bootstrap        (B) f32             factor of the next value besides the discount: 0 where the
-//                                        task ended, else discount^(m-1) of a sample of m steps
-//   weights_update   (B) u64             of the policy that chose the action; for policy lag
-//   id               (B) u64             of the record the sample begins with
+//   bootstrap        (B) f32             factor of the next value in addition to the discount: 0 if
+//                                        the task ended; discount^(m-1) for a sample of m steps
+//   weights_update   (B) u64             update of the policy that chose the action, for policy lag
+//   id               (B) u64             id of the sample's first record
 //
 // Arrays of a rollout (on policy). The rows are the steps of one environment in order, then the
 // steps of the next environment. Frames are not shifted, and next_obs_* are filled in only if
 // `continues` is 0:
 //
-//   drawn_action     (B, A) f32          before it was clipped to the action
-//   log_prob         (B) f32             of the drawn action under the policy that chose it
-//   ends             (B) f32             1: the step was its episode's last, else 0
-//   continues        (B) f32             1: the next row's observation is this one's next, else 0
+//   drawn_action     (B, A) f32          action before clipping
+//   log_prob         (B) f32             log-probability of the drawn action under its policy
+//   ends             (B) f32             1: last step of its episode; else 0
+//   continues        (B) f32             1: the next row continues from this step; else 0
 //   id               (B) u64             number of the environment
 //
-// K*C channels: K frames of a stack, C channels of a frame. P: floats of BatchOptions::privileged.
-// If the spec or the options lack pixels, vectors or privileged blocks, the batch has no array for
-// them. A new algorithm or sampler may need more arrays, such as importance weights or sequences
-// (whose length is the first dimension of an element); it adds an option and its arrays. Rows are
-// the first dimension of all arrays.
+// Dimensions: B rows of the batch, K frames of a stack, C channels of a frame, (H, W) height and
+// width, V floats of the observed blocks, P floats of the privileged blocks, A actions. Rows are
+// the first dimension of all arrays. If the spec or the options have no pixels, no vectors or no
+// privileged blocks, the batch has no array for them.
+//
+// A new algorithm or sampler may need more arrays, such as importance weights or sequences (the
+// length of a sequence is the first dimension of an element). In this case, add an option and its
+// arrays.
 #pragma once
 
 #include <cstddef>
@@ -65,7 +68,7 @@ struct BatchOptions {
   int n_step = 1;         // n
   double discount = 1;    // discount between the n summed steps
   bool rollout = false;   // rows are steps in order, with the arrays of a rollout
-  // Privileged inputs: blocks of the record that the policy does not observe; in any order.
+  // Privileged inputs: names of blocks that the policy does not observe, in any order.
   std::vector<std::string> privileged{};
 };
 
@@ -82,21 +85,21 @@ class BatchSchema {
   // Size of all arrays together, with the padding between them; a multiple of 64.
   uint64_t total_bytes() const { return total_bytes_; }
 
-  // Two schemas have the same hash exactly if their arrays and options are equal.
+  // Two schemas have the same hash if and only if their arrays and options are equal.
   uint64_t Hash() const;
-  // "batch 128, copies 1, n_step 1, discount 0.9: obs_frames u8 6x84x84, ..., id u64", for
-  // messages.
+  // Summary for messages: "batch 128, copies 1, n_step 1, discount 0.9: obs_frames u8 6x84x84, ...,
+  // id u64".
   std::string Summary() const;
 
-  // An array of the batch at `data`, which must hold total_bytes() aligned to 64. Borrows `data`. T
-  // is uint8_t, float or uint64_t. CHECKs that the array exists and has this type.
+  // An array of the batch at `data`, which must have total_bytes() bytes, aligned to 64. Borrows
+  // `data`. T is uint8_t, float or uint64_t. CHECKs that the array exists and has this type.
   template <class T>
   std::span<T> Array(std::string_view name, uint8_t* data) const;
   BatchView View(uint8_t* data, uint64_t stored_steps = 0) const;
 
  private:
   void Add(const std::string& name, ArrayType type, std::vector<int> shape = {});
-  // Position of the array; arrays_.size() when there is none.
+  // Position of the array in arrays_; arrays_.size() if there is no such array.
   size_t Find(std::string_view name) const;
 
   BatchOptions options_;
@@ -105,19 +108,20 @@ class BatchSchema {
   uint64_t total_bytes_ = 0;
 };
 
-// The arrays that most algorithms use, as members; a member is empty if the batch lacks the array.
-// The view covers all rows of a batch or a part of them. Borrows schema and memory.
+// View of a batch. The arrays that most algorithms use are members; a member is empty if the batch
+// does not have the array. A view contains all rows of a batch or a range of rows. Borrows schema
+// and memory.
 struct BatchView {
   std::span<uint8_t> obs_frames, next_obs_frames;
   std::span<float> obs_vector, next_obs_vector, action, reward, bootstrap;
   std::span<float> obs_privileged, next_obs_privileged;
   std::span<uint64_t> weights_update, id;
-  std::span<float> drawn_action, log_prob, ends, continues;  // of a rollout
+  std::span<float> drawn_action, log_prob, ends, continues;  // rollouts only
   uint64_t stored_steps = 0;  // the run's env steps when the batch was drawn, for schedules
 
   size_t rows() const { return reward.size(); }
 
-  // The view's rows of any array by its name (see BatchSchema::Array).
+  // The view's rows of the array with this name (see BatchSchema::Array).
   template <class T>
   std::span<T> Array(std::string_view name) const {
     const std::span<T> all = schema->Array<T>(name, data);

@@ -6,19 +6,18 @@
 //   offset  bytes
 //   0       8       magic "SHOALSL1"
 //   8       16      token, random
-//   24      8       learner session that the slots are for
-//   32      8       bytes of a slot
-//   40      4       slots, n
-//   64      8 n     per slot: the request whose whole batch is in the slot; 0 = none
+//   24      8       learner session to which the slots belong
+//   32      8       size of a slot in bytes
+//   40      4       n, the number of slots
+//   64      8 n     for each slot: the request whose whole batch is in the slot; 0 = empty
 //   then    slots, each at a multiple of 4096
 //
-// Slots belong to one learner session, which releases them in the order of its requests. Another
-// session gets other memory. A slot is therefore written again only after its reader has released
-// it. When a reader has ended, its slots are freed with the memory.
+// Slots belong to one learner session, which releases the slots in the order of its requests.
+// Another session gets other memory. Therefore a slot is written again only after its reader has
+// released the slot. When a reader has ended, the memory with its slots is freed.
 //
-// Errors: if the memory cannot be made or opened, the call throws Error, and both sides fall back
-// to BatchPart.
-// Threads: one at a time per object.
+// If the memory cannot be made or opened, the call throws Error. Replay and learner then use
+// BatchPart instead. Only one thread at a time may use an object.
 #pragma once
 
 #include <cstdint>
@@ -33,23 +32,24 @@ namespace shoal {
 // The replay's side. Owns the memory.
 class SlotWriter {
  public:
-  // `slots` batches of `batch_bytes`. Throws Error: SharedMemory::Make.
+  // Makes `slots` slots of `batch_bytes` bytes. Throws the errors of SharedMemory::Make.
   SlotWriter(uint64_t spec_hash, uint64_t learner_session, uint64_t batch_bytes, uint32_t slots);
+  // Size of the memory for these slots.
   static uint64_t MemoryBytes(uint64_t batch_bytes, uint32_t slots);
 
   const SlotAddress& address() const { return address_; }
-  // Memory of a free slot: batch_bytes, aligned to 4096. Returns nullptr while all slots hold
-  // batches. The slot counts as free until Fill().
+  // Returns the memory of a free slot: batch_bytes bytes, aligned to 4096. Returns nullptr if all
+  // slots contain batches. The slot counts as free until Fill().
   uint8_t* FreeSlot();
-  // Marks the slot that FreeSlot() returned last as full with the batch of `request`, which must
-  // not be held yet. Returns the message for the learner.
+  // Marks the slot that FreeSlot() returned last as full: it contains the batch of `request`. No
+  // other slot may contain a batch of this request. Returns the message for the learner.
   BatchSlot Fill(uint64_t request, uint64_t stored_records, uint64_t stored_steps,
                  uint64_t unsampleable_steps = 0);
-  // The message that announced the slot of `request`, if the slot is held.
+  // The message that announced the slot of `request`; empty if no slot contains this batch.
   std::optional<BatchSlot> Held(uint64_t request) const;
   // Frees the slots of requests up to `released`.
   void Release(uint64_t released);
-  // Number of slots that hold a batch.
+  // Number of slots that contain a batch.
   uint32_t held() const;
 
  private:
@@ -63,18 +63,18 @@ class SlotWriter {
   const SharedMemory memory_;
   SlotAddress address_;
   std::vector<Slot> slots_;
-  std::optional<uint32_t> writing_;  // handed out by FreeSlot
+  std::optional<uint32_t> writing_;  // slot that FreeSlot returned last
 };
 
 // The learner's side of the slots at a BatchSlot's address. Maps the memory during its lifetime.
 class SlotReader {
  public:
-  // Throws Error when the memory at the address does not hold the slots of this session.
+  // Throws Error if the memory at the address does not contain the slots of this session.
   SlotReader(const SlotAddress& address, uint64_t learner_session, uint64_t batch_bytes);
 
   const SlotAddress& address() const { return address_; }
-  // The batch of the request; valid until the learner releases the request. Throws Error when the
-  // slot holds another batch.
+  // The batch of the request; valid until the learner releases the request. Throws Error if the
+  // slot contains another batch.
   uint8_t* Batch(uint32_t slot, uint64_t request) const;
 
  private:

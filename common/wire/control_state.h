@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The coordinator's last request, and whether the coordinator still runs. A receive thread of the
-// link writes it, and the loop of the process reads it.
+// link writes this state, and the main loop of the process reads it.
 #pragma once
 
 #include <chrono>
@@ -21,7 +21,8 @@ class ControlState {
   // `start`: time from which the process waits for the first heartbeat.
   explicit ControlState(SteadyTime start) : liveness_(start) {}
 
-  // Takes a message; ignores epochs older than the newest one seen. Any thread.
+  // Stores the request of a message, unless its epoch is older than the newest epoch so far. Any
+  // thread.
   void OnMessage(const ControlMessage& message, SteadyTime now);
 
   RunState state() const;
@@ -31,9 +32,9 @@ class ControlState {
   double SettingOr(std::string_view key, double configured) const {
     return Setting(key).value_or(configured);
   }
-  // Whether the coordinator is lost: no heartbeat arrived for kLease (kFirstLease before the first
-  // one). Call it several times a second, because time in which this process did not run is not
-  // counted.
+  // Whether the coordinator is lost, because no heartbeat arrived for kLease (before the first
+  // heartbeat: for kFirstLease). Call this function several times a second, because time in which
+  // this process did not run is not counted.
   bool CoordinatorLost(SteadyTime now);
 
   // Long enough for a coordinator that was stopped for ten seconds to send a heartbeat again.

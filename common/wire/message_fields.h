@@ -15,8 +15,8 @@ namespace shoal {
 template <class M, class Message>
 concept FieldsAsIn = std::derived_from<std::remove_const_t<M>, Message>;
 
-// A text that may have several lines, such as JSON. All other texts have one line, because they are
-// shown to users.
+// Marks a text that may have several lines, such as JSON. All other texts have only one line,
+// because they are shown to users.
 template <class S>
 struct LongText {
   S& text;

@@ -2,7 +2,8 @@
 // Messages between processes, as plain structs. common/link carries the messages; this file does
 // not depend on a transport. docs/wire_format.md gives topics, QoS and byte layout.
 //
-// Bulk messages borrow their payload: on reception it is valid only during the callback.
+// Bulk messages borrow their payload. The payload of a received message is valid only during the
+// callback.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +13,11 @@
 
 namespace shoal {
 
-// Version of the weights. Weights of a newer learner session are newer, whatever the update number.
-// Session 0: no weights yet.
+// Version of the weights. Weights of a newer learner session are newer, even if the update number
+// is lower. Session 0: no weights yet.
 struct WeightsVersion {
   uint64_t session = 0;  // wall-clock ns at the learner's start: later starts are larger
-  uint64_t update = 0;   // gradient updates done
+  uint64_t update = 0;   // number of updates
 
   bool operator==(const WeightsVersion&) const = default;
   bool NewerThan(const WeightsVersion& other) const {
@@ -24,12 +25,13 @@ struct WeightsVersion {
   }
 };
 
-// Most bytes of a batch or of weights in one message, so that it stays below 1 MB with its header.
+// Most bytes of a batch or of weights in one message. The message with its header is then smaller
+// than 1 MB.
 inline constexpr uint64_t kBulkPartBytes = 960 * 1024;
 
-// actor -> the receiver of its records: the replay, or the learner of a run on policy. `count`
-// records of equal size, sequences first_sequence .. first_sequence+count-1. Without records it
-// reports that the actor retains no record before first_sequence.
+// actor -> the receiver of its records: the replay or, on policy, the learner. The chunk contains
+// `count` records of equal size, with sequences first_sequence .. first_sequence+count-1. A chunk
+// without records reports that the actor retains no record before first_sequence.
 struct TransitionChunk {
   uint64_t spec_hash = 0;
   uint32_t actor = 0;
@@ -39,38 +41,45 @@ struct TransitionChunk {
   std::span<const uint8_t> payload;
 };
 
-// Credit of the receiver for one actor session: flow control and acknowledgement in one.
+// Credit for one actor session, from the receiver of its records. A credit is flow control and
+// acknowledgement.
 struct Credit {
-  uint64_t replay_session = 0;  // the receiver's: on a change, the actor resends unstored records
+  // Session of the receiver. If it changes, the actor resends its unacknowledged records.
+  uint64_t replay_session = 0;
   uint32_t actor = 0;
   uint64_t session = 0;
-  uint64_t stored = 0;         // every record up to this sequence was handled
-  uint64_t allowed = 0;        // highest sequence that may be sent
-  uint64_t spec_hash = 0;      // the receiver's: an actor with another hash stops, naming both
-  uint64_t superseded_by = 0;  // newer session of the same actor: this session ends; 0 = none
+  uint64_t stored = 0;   // every record up to this sequence was handled
+  uint64_t allowed = 0;  // highest sequence that may be sent
+  // Spec hash of the receiver. An actor with another hash stops with an error that names both
+  // hashes.
+  uint64_t spec_hash = 0;
+  // Newer session of the same actor; the older session must end. 0 = there is no newer session.
+  uint64_t superseded_by = 0;
 };
 
-// receiver -> all actors: the credits that have changed. One message carries all of them, because
-// every actor receives each message.
+// receiver -> all actors: the credits that have changed. One message contains all these credits,
+// because every actor receives each message.
 struct CreditsMessage {
   std::vector<Credit> credits;
 };
 
-// learner -> replay. Resent unchanged after a time-out; the answer depends on the request id and
-// the ring's content only.
+// learner -> replay: request for a batch. After a time-out, the learner resends the request
+// unchanged. The answer depends only on the request number and on the ring's content.
 struct SampleRequest {
   uint64_t spec_hash = 0;
   uint64_t learner_session = 0;
-  uint64_t request = 0;  // from 1; keys the sampler's random stream
+  uint64_t request = 0;  // from 1; selects the sampler's random stream
   uint32_t batch = 0;    // B
-  // The replay serves the request once this many step records are stored (lockstep); 0 = at once.
+  // Lockstep: the replay serves the request after this number of step records is stored; 0 = at
+  // once.
   uint64_t after_steps = 0;
   uint64_t schema_hash = 0;  // BatchSchema::Hash of the batch (common/wire/batch_schema.h)
-  // The learner has released the batches of all requests up to this number; < request.
+  // The learner has released the batches of all requests up to this number, which is < `request`.
   uint64_t released = 0;
   // Whether the answer may be a BatchSlot; else the answer consists of parts.
   bool takes_slots = false;
-  uint64_t refused_token = 0;  // SlotAddress::token[0] of slots that cannot be opened; 0 = none
+  // SlotAddress::token[0] of slots that the learner cannot open; 0 = no such slots.
+  uint64_t refused_token = 0;
 };
 
 // replay -> learner: part of one batch in the layout of common/wire/batch_schema.h.
@@ -82,14 +91,14 @@ struct BatchPart {
   uint64_t offset = 0, total_bytes = 0;
   uint64_t stored_records = 0;  // records stored over the whole run when the batch was drawn
   uint64_t stored_steps = 0;    // step records among stored_records: the run's env steps
-  // Steps stored since this replay's start with which no sample can begin: the n - 1 steps before a
-  // time limit, and steps that wait for a later record.
+  // Number of steps stored since this replay's start at which no sample can begin: the n - 1 steps
+  // before a time limit, and steps whose later records are not stored yet.
   uint64_t unsampleable_steps = 0;
   std::span<const uint8_t> payload;
 };
 
-// Address of slots of batches: shared memory of a process on the same host. A token in its first
-// bytes identifies it (common/wire/batch_slots.h).
+// Address of slots of batches: shared memory of a process on the same host. A token in the first
+// bytes of the memory identifies it (common/wire/batch_slots.h).
 struct SlotAddress {
   int32_t pid = 0;
   int32_t descriptor = 0;      // file descriptor in the process `pid`
@@ -98,8 +107,8 @@ struct SlotAddress {
   bool operator==(const SlotAddress&) const = default;
 };
 
-// replay -> learner, in place of the batch's parts: the whole batch is in a slot and stays there
-// unchanged until a request releases it.
+// replay -> learner, instead of BatchParts: the whole batch is in a slot. The batch does not change
+// until a SampleRequest releases it.
 struct BatchSlot {
   uint64_t spec_hash = 0;
   uint64_t learner_session = 0;
@@ -109,7 +118,7 @@ struct BatchSlot {
   uint32_t slot = 0;
 };
 
-// One version of a policy: the payload is a safetensors file of its parameters.
+// One version of a policy. The payload is a safetensors file with the parameters.
 struct WeightsMessage {
   uint64_t spec_hash = 0;
   WeightsVersion version;
@@ -120,13 +129,13 @@ struct WeightsMessage {
 // The F32 parameters of a checkpoint to evaluate.
 struct EvalWeightsMessage : WeightsMessage {};
 
-// learner -> actors: one part of a version (common/wire/weights_parts.h).
+// learner -> actors: one part of a version's parameters (common/wire/weights_parts.h).
 struct WeightsPart {
   uint32_t part = 0;  // from 0
   uint64_t spec_hash = 0;
   WeightsVersion version;
   uint64_t env_steps = 0;
-  uint64_t total_bytes = 0;  // of all parts
+  uint64_t total_bytes = 0;  // size of all parts together
   uint32_t crc = 0;          // CRC-32 of the payload
   std::string checkpoint;
   std::span<const uint8_t> payload;
@@ -148,16 +157,16 @@ struct MetricsMessage {
   std::vector<double> values;
 };
 
-// The same message, one type for each sending role. Each role has its own topic, so that in a
-// secured run no other role can send in its place.
+// MetricsMessage as one type for each sending role. Each role has its own topic, so that in a
+// secured run no other role can send reports of this role.
 struct ActorMetrics : MetricsMessage {};
 struct EvalMetrics : MetricsMessage {};
 struct ReplayMetrics : MetricsMessage {};
 struct LearnerMetrics : MetricsMessage {};
 
-// replay -> coordinator, when records were stored. The coordinator decides by the figures of the
-// progress messages, whereas metrics are only shown. The newest message of the newest session is
-// valid.
+// replay -> coordinator, after records were stored. The decisions of the coordinator depend on the
+// numbers in progress messages; metrics are only displayed. The newest message of the newest
+// session is valid.
 struct ReplayProgress {
   uint32_t replay = 0;   // number of the replay server
   uint64_t session = 0;  // session of the replay server
@@ -177,11 +186,11 @@ struct LearnerProgress {
 
   uint64_t session = 0;
   uint64_t updates = 0, env_steps = 0;
-  bool drained = false;  // the learner has done all updates that the stored steps allow
-  std::vector<EvaluationRequest> evaluations{};  // the last ones of this session, oldest first
+  bool drained = false;  // whether the learner has made all updates that the stored steps allow
+  std::vector<EvaluationRequest> evaluations{};  // latest requests of this session, oldest first
 };
 
-// coordinator -> all. The message with the highest `epoch` is valid.
+// coordinator -> all other processes. The message with the highest `epoch` is valid.
 enum class RunState : uint32_t {
   kRunning = 1,
   kDraining = 2,  // actors stop stepping, send their records, wait until these are stored, exit
@@ -191,8 +200,8 @@ struct ControlMessage {
   uint64_t epoch = 0;
   RunState state = RunState::kRunning;
   double time = 0;  // heartbeat: published at least once a second
-  // Configuration keys changed during the run, and their present values; both lists have the same
-  // length. All other keys have the values of config.json.
+  // Configuration keys that were changed during the run, and their present values. The two lists
+  // have the same length. All other keys have the values of config.json.
   std::vector<std::string> setting_names{};
   std::vector<double> setting_values{};
 };
@@ -205,21 +214,21 @@ struct EvalMessage {
   std::string json;
 };
 
-// Something that happened in a run, as one line for people. Numbers grow by one from 1.
+// Event of a run, as one line of text for people. Numbers start at 1 and increase by 1.
 struct RunEvent {
   uint64_t number = 0;
   double time = 0;  // seconds since 1970
   std::string text;
 };
 
-// coordinator -> `shoal top` and other watchers, 1 Hz: the whole run at once.
+// coordinator -> `shoal top` and other clients, 1 Hz: the state of the whole run.
 struct RunViewMessage {
   std::string schema = "shoal-top-1";
   std::string run{};    // name
   double time = 0;      // seconds since 1970
   std::string state{};  // "running" | "draining" | "stopping" | "evaluating" | "ended"
   uint64_t env_steps = 0, updates = 0;
-  std::vector<MetricsMessage> processes{};  // by role and id
+  std::vector<MetricsMessage> processes{};  // ordered by role and id
   std::vector<RunEvent> events{};           // the last events, oldest first
   std::string trouble{};  // one line: which actors do not work, and why; empty if all work
 };
@@ -227,7 +236,7 @@ struct RunViewMessage {
 // client -> coordinator: a command. The client resends the command unchanged until the reply
 // arrives; the coordinator executes it once.
 struct CommandMessage {
-  uint64_t client = 0;   // names the sender
+  uint64_t client = 0;   // identifies the sender
   uint64_t request = 0;  // from 1, per client
   std::string verb;      // "scale" | "set" | "stop"
   std::vector<std::string> arguments{};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one table of metrics: name, reporting role, unit and meaning of each. Each algorithm names
-// the figures of its updates; launch/watch/run_metrics.h combines both lists.
+// Table of the metrics that processes report: name, role, unit and meaning of each metric. Metrics
+// of updates are not in this table: each algorithm has its own list of them.
+// launch/watch/run_metrics.h combines the table with these lists.
 #pragma once
 
 #include <span>
@@ -13,8 +14,8 @@ enum class MetricKind {
   kGauge,      // present value, or value over the last interval
   kCounter,    // total since the process's start
   kQuantiles,  // NAME_p50, NAME_p90 and NAME_p99 over the last interval
-  kPerTopic,   // NAME_TOPIC for each topic that the process reads, a counter
-  kStage,      // seconds_NAME, a counter, and share_NAME, the share of the last interval
+  kPerTopic,   // NAME_TOPIC for each topic that the process reads; a counter
+  kStage,      // seconds_NAME (a counter) and share_NAME (share of the last interval)
   kPerStage,   // NAME_ROLE_STAGE for each stage of each role
 };
 
@@ -26,11 +27,12 @@ struct Metric {
   std::string_view meaning;
 };
 
-// All metrics except the figures of updates, ordered by role, then in the order of the reports.
+// All metrics except those of updates, ordered by role, and within a role in the order of the
+// reports.
 std::span<const Metric> ProcessMetrics();
 
 // The metric of `role` among `metrics` to which a reported name ("share_physics",
-// "policy_lag_p90") belongs; nullptr if there is none.
+// "policy_lag_p90") belongs; nullptr if there is no such metric.
 const Metric* FindMetric(std::span<const Metric> metrics, std::string_view role,
                          std::string_view reported);
 

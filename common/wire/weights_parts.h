@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Weights are sent in parts, so that no sample exceeds the size that the transport carries well.
-// Part k holds the bytes from k * kBulkPartBytes on. A version is complete when all its parts have
-// arrived. If a part of a newer version arrives first, the incomplete version is dropped.
+// Weights are sent in parts, because the transport is slow for large samples. Part k contains the
+// bytes from offset k * kBulkPartBytes. A version is complete when all its parts have arrived. If a
+// part of a newer version arrives before, the incomplete version is dropped.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace shoal {
 
-// Largest size of one version. The first part that arrives makes the receiver reserve the whole
-// size.
+// Largest size of one version in bytes. When the first part of a version arrives, the receiver
+// reserves memory for all its parts.
 inline constexpr uint64_t kMaxWeightsBytes = 1'000'000'000;
 
 inline uint64_t WeightsParts(uint64_t total_bytes) {
@@ -26,13 +26,14 @@ inline uint64_t WeightsParts(uint64_t total_bytes) {
 template <class Part>
 Part PartOf(const WeightsMessage& weights, uint32_t part);
 
-// Assembles the newest version from its parts. Owns its memory. One thread at a time.
+// Assembles the newest version from its parts. Owns its memory. Only one thread at a time may use
+// an object.
 class WeightsAssembler {
  public:
   enum class Verdict {
     kTaken,     // stored; other parts are still missing
     kComplete,  // stored; this part was the last one, so call Take()
-    kKnown,     // ignored: the part arrived before, or its version is complete or not the newest
+    kKnown,     // ignored: the part arrived before, or its version is complete or is not the newest
     kRefused,   // the part is damaged or inconsistent
   };
   Verdict Add(const WeightsPart& part);
@@ -41,7 +42,7 @@ class WeightsAssembler {
   std::string Take() { return std::move(bytes_); }
 
  private:
-  WeightsVersion version_;  // the complete version, or the one being assembled
+  WeightsVersion version_;  // version that is complete or that is being assembled
   std::string bytes_;
   std::vector<bool> there_;  // by part: whether the part has arrived
   uint64_t missing_ = 0;     // number of missing parts

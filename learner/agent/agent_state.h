@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The state of an agent in a checkpoint. One list of entries defines both writing and reading.
+// The state of an agent in a checkpoint. Writing and reading use the same list of entries.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace shoal::learner {
 
-// Borrows the added objects, which must outlive the state. One thread.
+// Borrows the added objects, which must outlive the state. Only one thread may use an object.
 class AgentState {
  public:
   // Adds parameters under their own names. Restore refreshes the module.
@@ -22,7 +22,7 @@ class AgentState {
   // Adds parameters outside of any module (an average, a temperature): as PREFIX.NAME, or as NAME
   // if the prefix is empty.
   void Add(nn::ParameterSet* set, const std::string& prefix);
-  // Adds an optimiser's moments and its counter of steps, which `group` names.
+  // Adds an optimiser's moments and its counter of steps. `group`: part of the counter's name.
   void Add(nn::Adam* optimiser, const std::string& group);
   void Add(uint64_t* counter, const std::string& name);
   // Adds any other state by a function that writes it and a function that reads it. Like Restore,
@@ -32,7 +32,8 @@ class AgentState {
   void Add(Write write, Read read) { parts_.push_back({std::move(write), std::move(read)}); }
 
   nn::TensorMap Export() const;
-  // Throws Error that names a missing tensor or a wrong shape, and then changes nothing.
+  // Reads all entries. If a tensor is missing or has a wrong shape, throws Error that names the
+  // tensor, and changes nothing.
   void Restore(const nn::TensorMap& tensors, const std::string& source);
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The algorithms that learner.algorithm selects, as used by the learner.
-// common/config/algorithm_kind.h lists them in the same order, with the properties that keys,
-// actors and launch use.
+// The algorithms that learner.algorithm selects, with the properties that the learner uses.
+// common/config/algorithm_kind.h lists the algorithms in the same order, with the properties that
+// keys, actors and launch use.
 #pragma once
 
 #include <functional>
@@ -20,11 +20,10 @@ namespace shoal::learner {
 
 struct Algorithm {
   std::string_view name;  // value of learner.algorithm
-  // Figures that its updates report, in this order. An update reports every figure that it
-  // computes.
+  // Metrics that the algorithm's updates may report, in this order.
   std::span<const Figure* const> figures;
   int critics = 0;  // trained Q functions, each with a target; 0 on policy
-  // Class of Stable-Baselines3 with the same policy network; empty if there is none.
+  // Class of Stable-Baselines3 with the same policy network; empty if there is no such class.
   std::string_view sb3 = "";
   // Makes an agent that computes with `engine`, which it borrows. Initialises the networks from
   // config.seed. Throws Error if the configuration does not fit.
@@ -36,13 +35,14 @@ struct Algorithm {
 };
 
 std::span<const Algorithm> Algorithms();
-// Throws Error (kUsage) that lists the existing algorithms if there is none of this name.
+// If there is no algorithm of this name, throws Error (kUsage) that lists the existing algorithms.
 const Algorithm& FindAlgorithm(std::string_view name);
 
-// Returns the number of replicas (common/nn/replica.h) for `threads` threads. This is one per
-// thread, or a single replica with several threads per pass if the algorithm does not divide rows,
-// or if the encoder has batch normalisation, whose statistics need the whole batch. Throws Error
-// (kUsage) if the replicas cannot share the batch (CheckReplicas), and the errors of MakeAgent.
+// Returns the number of replicas (common/nn/replica.h) for `threads` threads. Usually there is one
+// replica for each thread. There is a single replica, whose passes use all threads, if the
+// algorithm does not divide rows, or if the encoder has batch normalisation, which needs statistics
+// of the whole batch. Throws Error (kUsage) if the replicas cannot share the batch (CheckReplicas),
+// and the errors of MakeAgent.
 int ReplicasOf(const Config& config, const ObservationSpec& spec, int threads);
 
 // Text about the learner's threads: "2 threads, a replica each".
@@ -58,9 +58,9 @@ std::unique_ptr<Agent> MakeAgent(const Config& config, const ObservationSpec& sp
 using AgentFactory = std::function<std::unique_ptr<Agent>(
     const Config& config, const ObservationSpec& spec, nn::Precision precision)>;
 
-// Every figure that the updates of a run may have, in the order of algorithms, each name once.
+// All metrics that updates may have, in the order of algorithms, without duplicates.
 std::span<const Figure* const> AllFigures();
-// Returns the figure of this name; nullptr if no update reports one.
+// Returns the metric of this name; nullptr if no update reports such a metric.
 const Figure* FindFigure(std::string_view name);
 
 }  // namespace shoal::learner

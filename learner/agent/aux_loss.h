@@ -21,20 +21,20 @@
 
 namespace shoal::learner {
 
-// One thread.
+// Only one thread may use an object.
 class AuxLoss {
  public:
-  // Makes the loss; null without sac.aux. Borrows the engine and `trunk`, the trunk of the head
-  // that trains the encoder.
+  // Makes the loss; returns null without sac.aux. Borrows the engine and `trunk`, which belongs to
+  // the head that trains the encoder.
   static std::unique_ptr<AuxLoss> Make(const Config& config, const ObservationSpec& spec,
                                        const nn::Features* trunk, Engine* engine);
 
   nn::ReadoutModule& readout() { return readout_; }
 
-  // Computes the loss for the trunk's current outputs, and writes its gradient for the trunk's next
-  // Backward. `batch`: before any normalisation.
+  // Computes the loss for the trunk's current outputs, and writes the gradient for the trunk's next
+  // Backward. `batch`: the batch before normalisation.
   void ForwardBackward(const Transitions& batch);
-  // The mean square of (0.15 y - label), in the labels' unit squared, after the next Gather.
+  // The mean square of (0.15 y - label), in the labels' unit squared. Valid after the next Gather.
   Number mean_square() const { return mean_square_; }
 
  private:

@@ -3,6 +3,8 @@
 // (sac.critic_blocks), privileged blocks.
 //
 //   obs[b] = [ obs_vector[b] | critic's columns of obs_privileged[b] ],   (B, C)
+//
+// Dimensions: B batch, C size of the critic's vector.
 #pragma once
 
 #include <vector>
@@ -17,14 +19,14 @@ namespace shoal::learner {
 // a spec without pixels whose vector (C) ends with the privileged blocks.
 ObservationSpec CriticSpec(const Config& config, const ObservationSpec& spec);
 
-// One thread.
+// Only one thread may use an object.
 class CriticVectors {
  public:
   // Borrows the engine.
   CriticVectors(const Config& config, const ObservationSpec& spec, Engine* engine);
 
-  // Arrays (B, C): the batch's own arrays if no block is added, else arrays that are valid until
-  // the next call.
+  // Arrays (B, C). If no privileged block is added, they are the batch's own arrays. Otherwise,
+  // they are valid until the next call.
   struct Vectors {
     Array obs, next_obs;
   };

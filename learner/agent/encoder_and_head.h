@@ -13,13 +13,14 @@
 
 namespace shoal::learner {
 
-// Makes an encoder; null without pixels. `name`: see nn::PlanEncoder.
+// Makes an encoder; returns null without pixels. `name`: see nn::PlanEncoder.
 std::unique_ptr<nn::EncoderModule> MakeEncoder(const NetworkConfig& network,
                                                const ObservationSpec& spec, nn::Module::Use use,
                                                const nn::ModuleContext& context,
                                                const std::string& name = "encoder");
 
-// Parameter sets that one optimiser steps together; `encoder` may be null. Borrows both.
+// Returns the parameter sets of encoder and head, for one optimiser. `encoder` may be null. Borrows
+// the two modules.
 std::vector<nn::ParameterSet*> SetsOf(nn::EncoderModule* encoder, nn::Module* head);
 
 }  // namespace shoal::learner

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The figures of an update while it is computed. The sheet maps each figure to a number of the
-// engine, and reads the numbers when the update has ended.
+// The metrics (Figure) of an update during its computation. The sheet assigns a number of the
+// engine to each metric, and reads the numbers after the end of the update.
 #pragma once
 
 #include <span>
@@ -11,32 +11,32 @@
 
 namespace shoal::learner {
 
-// One thread.
+// Only one thread may use an object.
 class FigureSheet {
  public:
-  // Sets a figure. Call it in the order in which the update reports its figures, and at most once
-  // per figure and update.
+  // Sets a metric. Set metrics in the order in which the update reports them, each metric at most
+  // once in an update.
   void Set(const Figure& figure, Number number) { entries_.push_back({&figure, number}); }
-  // Sets a figure to the square root of a number: the norm of a gradient from the sum of its
-  // squares.
+  // Sets a metric to the square root of a number. The norm of a gradient is the square root of the
+  // sum of its squares.
   void SetRoot(const Figure& figure, Number squares) {
     entries_.push_back({&figure, squares, /*root=*/true});
   }
-  // Sets a figure to a value of the host.
+  // Sets a metric to a value on the host.
   void SetValue(const Figure& figure, double value) {
     entries_.push_back({&figure, {}, false, value});
   }
-  // Sets the figures of a critic's loss, from the loss to the values of its Q functions.
+  // Sets all metrics of a critic: loss, targets, gradient and values of the Q functions.
   void SetCritic(const CriticNumbers& numbers, Number gradient_squares);
 
-  // Reads the figures that were set since the last call. Call it after Engine::End. Returns no
-  // figures if the batch was not finite.
+  // Reads the metrics that were set since the last call. Call it after Engine::End. Returns no
+  // metrics if the batch was not finite.
   UpdateFigures Take(const Engine& engine, const Engine::Outcome& outcome);
 
  private:
   struct Entry {
     const Figure* figure;
-    Number number;  // none: `value`
+    Number number;  // empty: `value` is used
     bool root = false;
     double value = 0;
   };

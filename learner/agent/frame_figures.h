@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Figures of the images of a batch, by camera, for every algorithm.
+// Metrics of the images of a batch, for every algorithm.
 #pragma once
 
 #include "common/spec/observation_spec.h"
@@ -15,8 +15,8 @@ inline constexpr Figure kFrozenCameras{
     "frozen_cameras", "", "that show one picture throughout a batch; with pixels", false, ""};
 inline constexpr const Figure* kFrameFigures[] = {&kFrameSpread, &kFrozenCameras};
 
-// Appends both figures; appends none without pixels. A batch is a random sample, so its first
-// frames represent all. `shift_pad`: the largest random shift of its frames.
+// Appends the two metrics; appends no metric without pixels. Only the first frames of the batch are
+// read, because a batch is a random sample. `shift_pad`: the largest random shift of the frames.
 void AddFrameFigures(const BatchView& batch, const ObservationSpec& spec, int shift_pad,
                      UpdateFigures* figures);
 

@@ -3,7 +3,7 @@
 //
 // Given weights replace networks (encoder.*, actor.*, critic.*, value.*, their targets and
 // averages) and the running moments of observations. Optimisers, temperature, counters and the
-// scale of rewards start as in any new run.
+// scale of rewards start as in every new run.
 #pragma once
 
 #include <string>
@@ -13,11 +13,11 @@
 
 namespace shoal::learner {
 
-// Returns the AllTensors of an agent that starts from `weights` (F32, Shoal's names). `weights`
-// replace the tensors of `agent`, and also the copies that `weights` lacks (averages, targets,
-// further encoders). The policy must be complete; a critic is optional. Throws Error (kUsage) that
-// names `source` and the tensor if a tensor is missing, has another shape or type, is not finite or
-// does not belong to this network.
+// Returns all tensors (Agent::AllTensors) of an agent that starts from `weights` (F32, Shoal's
+// names). The tensors in `weights` replace tensors of `agent`. If `weights` has no averages,
+// targets or further encoders, copies of the given tensors replace them. The policy must be
+// complete; a critic is optional. Throws Error (kUsage) that names `source` and the tensor if a
+// tensor is missing, has a wrong shape or type, is not finite or does not belong to this network.
 nn::TensorMap StartTensors(const nn::TensorMap& weights, const std::string& source,
                            const Agent& agent);
 

@@ -2,8 +2,8 @@
 // The moving average of a policy's parameters (Eq. 12 of docs/algorithm.md). No network in the
 // learner computes with this average.
 //
-// Replicas share its values, and each updates a share of them. The values are read only after the
-// update has ended for all replicas.
+// Replicas share the values of the average, and each replica updates a part of the values. The
+// values are read only after the update has ended for all replicas.
 #pragma once
 
 #include <deque>
@@ -16,7 +16,7 @@
 
 namespace shoal::learner {
 
-// Not movable. One thread, its replica's.
+// Not movable. Only the thread of the replica may use an object.
 class PolicyAverage {
  public:
   // Borrows sets and engine.
@@ -26,13 +26,13 @@ class PolicyAverage {
 
   // Sets the average to the policy.
   void Copy();
-  // average += rate * (policy - average) if the update's flag is set (Engine::MoveAverage); running
-  // statistics are copied whole.
+  // average += rate * (policy - average) if the update's flag is set (Engine::MoveAverage). Running
+  // statistics are copied without averaging.
   void Move(float rate);
 
   // Returns the average under the policy's own names.
   nn::TensorMap Tensors() const;
-  // Adds its tensors under the names "average.NAME".
+  // Adds the average's tensors under the names "average.NAME".
   void AddTo(AgentState* state);
 
  private:

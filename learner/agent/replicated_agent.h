@@ -14,13 +14,14 @@
 
 namespace shoal::learner {
 
-// Makes the agent of one replica. This agent receives whole batches and learns from its engine's
-// rows. Borrows the engine.
+// Makes the agent of one replica. This agent receives whole batches, and learns only from the rows
+// of its engine. Borrows the engine.
 using MakeReplica = std::function<std::unique_ptr<Agent>(Engine*)>;
 
-// Makes replicas for the batch size and the number of copies in `config`. All replicas must start
-// equal, so `make` must depend on nothing but its engine. Each replica is made and run by its own
-// thread, so that its memory is on that thread's NUMA node. Throws the errors of `make`.
+// Makes an agent of `replicas` replicas for the batch size and the number of copies in `config`.
+// All replicas must start with equal values, so the result of `make` may depend only on the engine.
+// Each replica is made and run by its own thread, so that the replica's memory is on the NUMA node
+// of this thread. Throws the errors of `make`.
 std::unique_ptr<Agent> MakeReplicatedAgent(const Config& config, nn::Precision precision,
                                            int replicas, const MakeReplica& make);
 

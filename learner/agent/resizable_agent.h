@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// An agent whose number of threads may change between two updates. A change makes a new agent and
-// restores the tensors of the old one, as from a checkpoint; tensors do not depend on the number of
-// threads.
+// An agent whose number of threads may change between two updates. For a change, a new agent is
+// made, and the tensors of the old agent are restored into it, like those of a checkpoint. Tensors
+// do not depend on the number of threads.
 #pragma once
 
 #include <functional>
@@ -20,8 +20,8 @@ class ResizableAgent final : public Agent {
   ResizableAgent(Make make, int threads)
       : make_(std::move(make)), threads_(threads), agent_(make_(threads)) {}
 
-  // Changes the number of threads. Call it between updates. Takes as long as making an agent.
-  // Throws the errors of `make`; the agent is then unchanged.
+  // Changes the number of threads. Call it between updates. The call takes as long as making an
+  // agent. Throws the errors of `make`; the agent does not change then.
   void Resize(int threads);
   int threads() const { return threads_; }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stores moments (learner/engine/moments.h) as tensors of an agent's state, and keeps moments on
-// the host.
+// Moments (learner/engine/moments.h) on the host, and functions that store moments as tensors of an
+// agent's state.
 #pragma once
 
 #include <span>
@@ -15,21 +15,21 @@ namespace shoal::learner {
 // Writes the moments, bit for bit, as tensor `name` (U64).
 void ExportMoments(std::span<const double> moments, const std::string& name,
                    nn::TensorMap* tensors);
-// Reads tensor `name`. Throws Error that names the tensor if it is missing or does not hold the
-// moments of `width` numbers.
+// Reads tensor `name`. Throws Error that names the tensor if the tensor is missing or does not
+// contain the moments of `width` numbers.
 std::vector<double> ImportMoments(size_t width, const std::string& name,
                                   const nn::TensorMap& tensors, const std::string& source);
 
-// Mean and variance of vectors of V numbers. One thread.
+// Mean and variance of vectors of V numbers. Only one thread may use an object.
 class RunningMoments {
  public:
   explicit RunningMoments(int size) : moments_(MomentsSize(size_t(size))) {}
 
-  // rows (N, V).
+  // Adds N vectors; rows: (N, V).
   void Add(std::span<const float> rows) { AddToMoments(rows, moments_); }
 
   double count() const { return moments_[0]; }
-  // (V) f32: 0 and 1 before any vector.
+  // Mean and variance (V) as f32; 0 and 1 if no vector was added yet.
   std::vector<float> Mean() const { return MeanOf(moments_); }
   std::vector<float> Variance() const { return VarianceOf(moments_); }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Figures of a batch's transitions and of the critics' values for these transitions, for every
-// algorithm. TensorBoard shows the figures below replay/.
+// Metrics of a batch's transitions, and of the critics' values for these transitions, for every
+// algorithm. TensorBoard shows these metrics below replay/.
 #pragma once
 
 #include "common/spec/observation_spec.h"
@@ -9,7 +9,8 @@
 
 namespace shoal::learner {
 
-// Figures of sampled rewards, unscaled; the reward of an n-step sample is the sum.
+// Metrics of the sampled rewards, unscaled. The reward of an n-step sample is the sum of its
+// rewards.
 inline constexpr Figure kRewardMean{"reward_mean", "", "mean of sampled rewards", false,
                                     "replay/reward_mean"};
 inline constexpr Figure kRewardStd{"reward_std", "", "their standard deviation", false,
@@ -20,7 +21,7 @@ inline constexpr Figure kRewardAboveMinusHalf{
     "reward_above_minus_half", "",
     "share of sampled rewards above -0.5: of a sparse task, of samples at the goal", false,
     "replay/reward_above_minus_half"};
-// Present if the policy sees both goals.
+// The metrics of goals exist if the policy observes the achieved and the desired goal.
 inline constexpr Figure kGoalDistanceMean{"goal_distance_mean", "m",
                                           "between sampled goals; observation.goal_mode = both",
                                           false, "replay/goal_distance_mean"};
@@ -37,10 +38,11 @@ inline constexpr const Figure* kSampleFigures[] = {
     &kRewardAboveMinusHalf, &kGoalDistanceMean, &kGoalDistanceStd, &kGoalDistanceMin,
     &kGoalDistanceMax,      &kGoalWithin};
 
-// Appends the figures that exist for the unnormalised batch `batch`; appends none for a rollout.
+// Appends the metrics above that exist for `batch`, which must not be normalised. Appends no metric
+// for a rollout.
 void AddSampleFigures(const BatchView& batch, const ObservationSpec& spec, UpdateFigures* figures);
 
-// Figures of the Q functions before an update, at the sampled actions.
+// Metrics of the Q functions before an update, at the sampled actions.
 inline constexpr Figure kQ1Mean{"q1_mean", "", "mean of the first Q function", false,
                                 "replay/q1_mean"};
 inline constexpr Figure kQ1Std{"q1_std", "", "its standard deviation", false, "replay/q1_std"};

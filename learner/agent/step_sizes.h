@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Step sizes of an agent's optimisers: the learning rates of its parts, and the clipping of
-// gradients.
+// Options of an agent's optimisers: the learning rates of actor, critic and temperature, and the
+// clipping of gradients.
 #pragma once
 
 #include "common/config/config.h"
@@ -8,6 +8,7 @@
 
 namespace shoal::learner {
 
+// Returns the learning rate `own`, or learner.learning_rate if `own` is 0.
 inline double RateOr(double own, const LearnerConfig& learner) {
   return own > 0 ? own : learner.learning_rate;
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Figures of an update: an ordered list of names and values.
+// Figures: the metrics of an update, as an ordered list of names and values.
 //
 // Each figure is declared once, with its meaning: in an algorithm's folder if only this algorithm
 // computes the figure, otherwise here. Metrics, TensorBoard, Prometheus, the progress display and
-// the documentation use the name and meaning of the declaration (AllFigures in algorithms.h). A
-// figure that was not computed is absent, never 0.
+// the documentation use the name and the meaning of this declaration (AllFigures in algorithms.h).
+// If a figure was not computed, it is absent from the list, and not 0.
 #pragma once
 
 #include <optional>
@@ -18,10 +18,10 @@ struct Figure {
   std::string_view name;     // in metrics.jsonl and, as shoal_NAME, in Prometheus
   std::string_view unit;     // empty: a plain number
   std::string_view meaning;  // one line
-  bool headline = false;     // the progress display shows it
-  // The figure's tag in TensorBoard. A text with a slash is the whole tag; a text without one gives
-  // train/KNOWN_AS; an empty text gives train/NAME. Figures that are well known from other programs
-  // have the tag of those programs.
+  bool headline = false;     // whether the progress display shows the figure
+  // Determines the figure's tag in TensorBoard. A text with a slash is the whole tag; a text
+  // without a slash gives train/KNOWN_AS; an empty text gives train/NAME. If other programs have
+  // the same figure, the tag is the same as in those programs.
   std::string_view known_as;
 
   std::string Tag() const;
@@ -36,7 +36,7 @@ class UpdateFigures {
 
   // Appends the figure, which must live until the program ends and must not be in the list yet.
   void Set(const Figure& figure, double value);
-  // Replaces or appends.
+  // Replaces the figure's value, or appends the figure.
   void Replace(const Figure& figure, double value);
   std::optional<double> Get(const Figure& figure) const;
 
@@ -49,7 +49,7 @@ class UpdateFigures {
   std::vector<Entry> entries_;
 };
 
-// Figures that several algorithms compute. All are means over the batch of an update.
+// Figures that several algorithms compute. All of them are means over the batch of an update.
 inline constexpr Figure kCriticLoss{.name = "critic_loss",
                                     .unit = "",
                                     .meaning = "squared error of all Q, summed over the critics",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bounds of a value if every reward is -1 or 0 (sparse goals): from -1 / (1 - discount) to 0, times
-// the reward's scale. A target clipped to them cannot diverge (Eq. 20 of docs/algorithm.md).
+// the scale of rewards. A target that is clipped to these bounds cannot diverge (Eq. 20 of
+// docs/algorithm.md).
 #pragma once
 
 #include "common/config/config.h"
@@ -9,7 +10,7 @@
 
 namespace shoal::learner {
 
-// Returns the bounds of learner.bounded_targets; no bounds without this key.
+// Returns the bounds if learner.bounded_targets is set, otherwise no bounds.
 ValueBounds ValueBoundsOf(const LearnerConfig& learner);
 
 // Throws Error (kUsage) if learner.bounded_targets is set, but rewards are not -1 and 0 or values

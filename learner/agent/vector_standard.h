@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Normalises vectors for an algorithm's networks if learner.normalise_vectors is set: to about mean
-// 0 and deviation 1, by the moments of all vectors of earlier updates. The moments of observations
-// belong to the policy: actors and evaluations scale by the moments that were sent with their
-// weights (common/nn/vector_scale.h). The moments of privileged blocks stay in the learner. A
-// variance below learner.variance_floor counts as the floor, also in the policy's tensors.
+// If learner.normalise_vectors is set, scales the input vectors of an algorithm's networks to about
+// mean 0 and deviation 1, by the moments of all vectors of earlier updates. The moments of
+// observations belong to the policy: actors and evaluations use the moments that were sent with
+// their weights (common/nn/vector_scale.h). The moments of privileged blocks stay in the learner. A
+// variance below learner.variance_floor is replaced by the floor, also in the policy's tensors.
 //
 // Dimensions: b rows of this replica, V vector size, P privileged size.
 #pragma once
@@ -19,7 +19,7 @@
 
 namespace shoal::learner {
 
-// One thread.
+// Only one thread may use an object.
 class VectorStandard {
  public:
   // Borrows the engine. Without learner.normalise_vectors, or without vectors, this object changes
@@ -34,7 +34,7 @@ class VectorStandard {
 
   // Adds mean and variance to a policy's tensors.
   void ExportTo(nn::TensorMap* policy) const;
-  // `state` borrows the moments, if there are any.
+  // Adds the moments, if there are any, to `state`, which borrows them.
   void AddTo(AgentState* state);
 
  private:
@@ -48,7 +48,7 @@ class VectorStandard {
 
   Engine* const engine_;
   const float variance_floor_;
-  // Empty: these vectors are not normalised.
+  // Empty if these vectors are not normalised.
   std::optional<Part> observed_, privileged_;
 };
 

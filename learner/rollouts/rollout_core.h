@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Assembles rollouts from records, without threads, clocks and network. Takes chunks, returns
-// credits, and makes batches of complete rollouts, each of one environment.
+// Assembles rollouts from records, without threads, clocks and network. Receives chunks, returns
+// credits, and makes batches of complete rollouts. Each rollout belongs to one environment.
 //
-// A rollout is `ppo.rollout_steps` consecutive steps of one environment with one version of the
-// weights; it may span episodes. After an environment's reset, the observation before its next step
-// is known; a step is used only if it continues from that observation. A rollout is used for the
-// update that follows its version or, with ppo.versions_ahead = 1, for the update after that; older
+// A rollout consists of `ppo.rollout_steps` consecutive steps of one environment with one version
+// of the weights; it may contain parts of several episodes. A step is used only if the observation
+// before the step is known, from the record before it. A rollout is used for the update that
+// follows its version or, with ppo.versions_ahead = 1, for the update after that one. Older
 // rollouts are dropped. Newer rollouts are kept: weights are sent before the update's checkpoint is
-// written, so rollouts with these weights may arrive before they are awaited.
+// written, so rollouts with these weights may arrive before the learner waits for them.
 //
-// Accounting: a record is accounted for when it arrives. It counts as discarded until an update
+// Counts of records: a record is counted when it arrives. It counts as discarded until an update
 // uses it. Records of rollouts that are dropped, never completed, or lost with this process
-// therefore stay discarded, so the account is correct whenever the process ends.
+// therefore stay discarded, so the counts are correct whenever the process ends.
 //
-// Threads: none inside; one owner.
+// Starts no threads; not thread-safe, one owner.
 #pragma once
 
 #include <cstdint>
@@ -49,7 +49,7 @@ class RolloutCore final : private RecordTaker {
   // The same limit as in the replay.
   static constexpr size_t kMostSessions = 4096;
 
-  // `receiver_session`: session of this process. `before`: the account of the run's previous
+  // `receiver_session`: session of this process. `before`: the counts of the run's previous
   // learner.
   RolloutCore(const RunConfig& run, uint64_t receiver_session, const RunAccount& before);
   RolloutCore(const RolloutCore&) = delete;
@@ -69,21 +69,23 @@ class RolloutCore final : private RecordTaker {
   // Await.
   void SetActors(int actors);
 
-  // Number of environments whose rollouts the next update waits for: all environments of the run's
-  // actors, except the absent ones. An environment is absent if none of its records arrived during
-  // the last kAbsentAfter updates, which were made without it; the next record ends the absence.
+  // Number of environments for whose rollouts the next update waits: all environments of the run's
+  // actors, except the absent environments. An environment is absent if the last kAbsentAfter
+  // updates were made without it and none of its records arrived in this time. The next record ends
+  // the absence.
   int Expected() const { return Environments() - Absent(); }
+  // Number of absent environments.
   int Absent() const;
-  // Environments that have a rollout for the next update.
+  // Number of environments that have a rollout for the next update.
   int Ready() const;
   static constexpr int kAbsentAfter = 3;
-  // Schema of a batch of the ready rollouts; there must be at least one.
+  // Schema of a batch of the ready rollouts. At least one rollout must be ready.
   BatchSchema ReadySchema() const;
-  // Copies the ready rollouts, in the order of environments, to `data` (laid out by ReadySchema(),
-  // aligned to 64). Removes them and counts their records as used.
+  // Copies the ready rollouts, in the order of environments, to `data`, which has the layout of
+  // ReadySchema() and is aligned to 64. Removes these rollouts and counts their records as used.
   void TakeReady(const BatchSchema& schema, uint8_t* data);
 
-  // Totals of the whole run: step records taken, and records that updates used.
+  // Totals of the whole run: step records that were received, and records that updates used.
   uint64_t stored_steps() const { return stored_steps_; }
   uint64_t used_records() const { return used_records_; }
   const SessionLedger& sessions() const { return sessions_; }
@@ -98,33 +100,34 @@ class RolloutCore final : private RecordTaker {
   // Records of one environment with one version of the weights, in the order of steps.
   struct Rollout {
     WeightsVersion version;
-    int session = 0;                             // index of the actor session
-    uint64_t records = 0;                        // records, resets included
-    int rows = 0;                                // steps
+    int session = 0;                             // index of the actor session in sessions_
+    uint64_t records = 0;                        // number of records, including resets
+    int rows = 0;                                // number of steps
     std::vector<uint8_t> frames;                 // (rows, K*C, H, W)
-    std::vector<float> vectors, actions, drawn;  // (rows, V), (rows, A) twice
+    std::vector<float> vectors, actions, drawn;  // (rows, V), (rows, A), (rows, A)
     std::vector<float> rewards, bootstraps, log_probs, ends, continues;  // (rows)
-    // Next observations of the rows that the next row does not continue, in order.
+    // Next observations of the rows whose `continues` is 0, in the order of rows.
     std::vector<uint8_t> next_frames;
     std::vector<float> next_vectors;
 
     void Clear();
   };
+  // State of one environment.
   struct Lane {
     uint64_t actor_session = 0;
-    int session = -1;   // its index
-    bool open = false;  // the observation and the episode of the next step are known
+    int session = -1;   // index of actor_session in sessions_
+    bool open = false;  // whether the observation before the next step is known
     uint32_t episode = 0, index = 0;
-    std::vector<uint8_t> stack;  // (K*C, H, W): the observation of the next step
-    std::vector<float> vector;   // (V)
-    Rollout building;
-    std::deque<Rollout> whole;  // oldest first
-    int missed = 0;             // updates made without this environment since its last record
+    std::vector<uint8_t> stack;  // (K*C, H, W), observation before the next step
+    std::vector<float> vector;   // (V), observation before the next step
+    Rollout building;            // incomplete rollout
+    std::deque<Rollout> whole;   // complete rollouts, oldest first
+    int missed = 0;              // updates without this environment since its last record
   };
 
   bool Take(const SessionCounters& session, const uint8_t* record) override;
   void OnGap(const SessionCounters& session, uint32_t env) override;
-  // The lane of an environment that this actor may host; null for any other.
+  // The lane of an environment that this actor may run; null for any other environment.
   Lane* FindLane(uint32_t actor, uint32_t env);
   int Environments() const { return expected_actors_ * envs_per_actor_; }
   void EndEpisode(Lane* lane);
@@ -140,7 +143,7 @@ class RolloutCore final : private RecordTaker {
   const RunConfig run_;
   const RecordLayout layout_;
   const BlockPicker observed_;
-  const int steps_, envs_per_actor_;  // T
+  const int steps_, envs_per_actor_;  // steps_: ppo.rollout_steps
   const uint64_t versions_ahead_;
   const uint64_t receiver_session_;
   const size_t stack_bytes_;

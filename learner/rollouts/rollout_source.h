@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Batches of rollouts from actors, for the training loop. A separate thread takes chunks, keeps the
-// account and acknowledges records while the loop learns.
+// Batches of rollouts from actors, for the training loop. While the loop learns, a separate thread
+// receives chunks, counts and acknowledges their records.
 //
-// Records are written to RUN/accounting.json before they are acknowledged. A killed learner
-// therefore leaves a correct account, from which the next learner continues. If the file cannot be
-// written (a full disk), training continues, and the next successful write corrects the account.
-// Independent of DDS: OnChunk receives chunks, `send` sends credits.
+// The counts of records are written to RUN/accounting.json before the records are acknowledged. If
+// the learner is killed, the file is therefore correct, and the next learner continues from its
+// counts. If the file cannot be written (a full disk), training continues, and the next successful
+// write corrects the file. Does not depend on DDS: OnChunk receives chunks, `send` sends credits.
 //
-// A batch is complete when every environment that the update waits for has its rollout. Once
-// ppo.rollout_deadline has passed since the first rollout, half of the environments suffice; after
-// three times the deadline, any number suffices. A batch holds at least one minibatch
+// A batch is complete when every environment for which the update waits has a rollout. After
+// ppo.rollout_deadline has passed since the first rollout, half of the environments are enough;
+// after three times this deadline, any number is enough. A batch contains at least one minibatch
 // (learner.batch). Updates do not wait for environments that have stopped sending
 // (RolloutCore::Expected).
 //
@@ -42,24 +42,24 @@ class RolloutSource final : public BatchStream {
   using Send = std::function<void(const CreditsMessage&)>;
 
   // `learner_session`, `updates`: version of the weights for the first rollouts. Throws Error if
-  // the run's account cannot be read.
+  // RUN/accounting.json cannot be read.
   RolloutSource(const RunConfig& run, const std::filesystem::path& folder, uint64_t learner_session,
                 uint64_t updates, Send send);
-  // Writes the last account.
+  // Writes RUN/accounting.json for the last time.
   ~RolloutSource() override;
   RolloutSource(const RolloutSource&) = delete;
   RolloutSource& operator=(const RolloutSource&) = delete;
 
   void OnChunk(const TransitionChunk& chunk);
 
-  // Precondition: the update of the previous batch, if any, is done; actors wait for the weights of
-  // this update.
+  // Call this function after the update with the previous batch. It waits for rollouts with the
+  // weights of that update.
   std::optional<Batch> Next(SteadyTime deadline) override;
   BatchCounters counters() const override;
   // Sets the run's number of actors; a higher number takes effect with the next update.
   void SetActors(int actors) override;
 
-  // Keeps acknowledging records after the coordinator is lost, until no chunk has arrived for
+  // After the coordinator is lost, continues to acknowledge records until no chunk has arrived for
   // kFarewell, but at most for kFarewellLimit.
   void DrainAfterCoordinatorLoss();
 
@@ -68,12 +68,12 @@ class RolloutSource final : public BatchStream {
   // Returns the chunks that arrived since the last call; waits briefly if there are none.
   std::deque<std::unique_ptr<PooledChunk>> Arrivals() SHOAL_EXCLUDES(inbox_mutex_);
   void TakeChunks(std::deque<std::unique_ptr<PooledChunk>> chunks) SHOAL_EXCLUDES(mutex_);
-  // Writes the account, then acknowledges.
+  // Writes RUN/accounting.json, then acknowledges records.
   void Tell(bool all) SHOAL_EXCLUDES(mutex_);
   void WriteAccount() SHOAL_REQUIRES(mutex_);
   bool Complete(SteadyTime now) SHOAL_REQUIRES(mutex_);
   Batch HandOut() SHOAL_REQUIRES(mutex_);
-  // Logs when updates stop waiting for more environments.
+  // Logs a line when updates stop waiting for more environments.
   void SayAbsent() SHOAL_REQUIRES(mutex_);
   size_t MaxChunks(int actors) const;
 
@@ -108,7 +108,7 @@ class RolloutSource final : public BatchStream {
   AlignedBytes memory_;
   uint64_t memory_bytes_ = 0;
 
-  Thread thread_;  // last: it uses the others
+  Thread thread_;  // last, because it uses the other members
 };
 
 }  // namespace shoal::learner

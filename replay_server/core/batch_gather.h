@@ -1,28 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes a batch (common/wire/batch_schema.h) of drawn steps: assembles stacks and next observations
-// from frames that are stored once.
+// Makes a batch (common/wire/batch_schema.h) of drawn steps. Stacks and next observations are
+// assembled from frames that the ring stores once.
 //
-// A sample is m consecutive steps t .. t+m-1, named by its first step (Eq. 14 of
+// A sample consists of m consecutive steps t .. t+m-1; its id is that of its first step (Eq. 14 of
 // docs/algorithm.md). m = n, or less if step t+m-1 terminated the episode:
 //
-//   obs       = the K frames ending at the predecessor of step t
-//   action    = that of step t
+//   obs       = the K frames that end at the predecessor of step t
+//   action    = the action of step t
 //   reward    = r_t + discount r_(t+1) + ... + discount^(m-1) r_(t+m-1)
-//   next_obs  = the K frames ending at step t+m-1
-//   bootstrap = discount^(m-1) (1 - terminated): a time limit's end counts the next value
-//   a stack that would reach before the episode's reset repeats the reset's frame
+//   next_obs  = the K frames that end at step t+m-1
+//   bootstrap = discount^(m-1) (1 - terminated); after a time limit, the next value counts
 //
-// If the spec has goal pictures, both observations end with one more frame: the frame of the
-// episode's goal record. The goal frame is shifted like the stack before it, so that distances
-// between the two pictures are kept.
+// If a stack would begin before the episode's reset, the frame of the reset is repeated.
 //
-// If a sample is relabelled with another goal (goal_change.h), rewards, terminations and the
-// desired goal of both observations are computed for the new goal. The goal picture is then the
+// If the spec has goal pictures, the two observations end with one more frame: the frame of the
+// episode's goal record. The goal frame is shifted like the stack of the same observation, so that
+// distances between the two pictures are kept.
+//
+// If a sample is relabelled with another goal (goal_change.h), the rewards, the termination and the
+// desired goal of the two observations are computed for the new goal. The goal picture is then the
 // frame of the record that achieved the new goal. If episodes end on success, the sample ends with
-// the step that reaches the new goal. If the episode reached its own goal before n steps, the
-// sample ends with the episode: m < n, and the target bootstraps.
+// the step that reaches the new goal. If the episode reached its own goal after fewer than n steps,
+// the sample ends with the episode: m < n, and the target bootstraps.
 //
-// K: stack, C: channels of a frame, H, W: pixels, B: batch.
+// Dimensions: B batch, K frames of a stack, C channels of a frame, (H, W) height and width, I input
+// channels (K*C, or (K+1)*C with goal pictures).
 #pragma once
 
 #include <cstdint>
@@ -43,11 +45,11 @@
 
 namespace shoal::replay {
 
-// The elements of a batch, drawn before anything is copied.
+// The elements of a batch. They are drawn before any data are copied.
 struct BatchPlan {
   struct Element {
-    uint64_t id = 0;         // of the first step
-    double probability = 0;  // with which it was drawn
+    uint64_t id = 0;         // record id of the first step
+    double probability = 0;  // probability of the draw
     uint64_t goal = 0;       // record whose achieved goal replaces the goal; 0 = not relabelled
     Shift obs, next_obs;
   };
@@ -56,20 +58,23 @@ struct BatchPlan {
 
 struct PlanOptions {
   int batch = 1;          // B
-  int copies = 1;         // c: elements in a row with the same step; divides B
-  int target_shifts = 0;  // K: different shifts of next_obs among c; divides c, 0 = c
-  int critic_shifts = 0;  // M: different shifts of obs among c; divides c, 0 = c
+  int copies = 1;         // consecutive elements with the same step; divides B
+  int target_shifts = 0;  // different shifts of next_obs in a group of copies; 0 = copies
+  int critic_shifts = 0;  // different shifts of obs in a group of copies; 0 = copies
   int shift_pad = 0;      // pixels
 };
 
-// Draws a step for every `copies` elements and, with a relabeller, its goal. Element i of these
-// gets a new shift of obs if i < M, else the shift of element i - M; shifts of next_obs are drawn
-// likewise with K. Empty if the selector finds no step.
+// `target_shifts` and `critic_shifts` must divide `copies`.
+//
+// Draws a step for every group of `copies` elements and, if there is a relabeller, a goal. Element
+// i of a group gets a new shift of obs if i < critic_shifts, else the shift of element i -
+// critic_shifts. Shifts of next_obs are drawn in the same way with target_shifts. Returns empty if
+// the selector finds no step.
 std::optional<BatchPlan> DrawPlan(const PlanOptions& options, Selector* selector,
                                   Relabeller* relabeller, Random* random);
 
-// Calls part(0) .. part(parts - 1), each once, on any threads and in any order; returns when all
-// have returned.
+// Calls part(0) .. part(parts - 1), each once, on any threads and in any order. Returns when all
+// these calls have returned.
 using RunParts = std::function<void(int parts, const std::function<void(int part)>& part)>;
 
 struct NStep {
@@ -79,8 +84,8 @@ struct NStep {
 
 class BatchGather {
  public:
-  // Borrows the ring, the index and `goals`, which relabels transitions (null: no plan has goals).
-  // `privileged`: as in BatchOptions.
+  // Borrows the ring, the index and `goals`. `goals` relabels transitions; null: no sample is
+  // relabelled. `privileged`: as in BatchOptions.
   BatchGather(const Ring& ring, const EpisodeIndex& index, const ObservationSpec& spec,
               const NStep& n_step = {}, const GoalChange* goals = nullptr,
               std::span<const std::string> privileged = {});
@@ -88,15 +93,15 @@ class BatchGather {
   // Writes every byte of the arrays in `out`, whose batch is plan.elements.size() (CHECKed). The
   // steps must be sampleable for this stack and n.
   //
-  // `run` may divide the elements among threads, kElementsOfPart elements a part; null: the calling
-  // thread copies all. The bytes do not depend on the division.
+  // `run` may divide the elements among threads, in parts of kElementsOfPart elements. Null: the
+  // calling thread copies all elements. The result does not depend on the division.
   void Gather(const BatchPlan& plan, const BatchView& out, const RunParts& run = nullptr) const;
 
-  static constexpr int kElementsOfPart = 4;  // 340 kB of two cameras' frames
+  static constexpr int kElementsOfPart = 4;  // 340 kB of frames with two cameras
 
  private:
-  size_t InputBytes() const;  // of one observation's pictures
-  // The elements [begin, end) of the plan, as Gather.
+  size_t InputBytes() const;  // bytes of one observation's pictures
+  // Does the work of Gather for the elements [begin, end) of the plan.
   void GatherElements(const BatchPlan& plan, size_t begin, size_t end, const BatchView& out) const;
   // The goal of a relabelled element; empty for other elements.
   std::span<const float> GoalOf(const BatchPlan::Element& element) const;
@@ -108,7 +113,8 @@ class BatchGather {
   Returns SumRewards(uint64_t first, std::span<const float> goal) const;
   // Writes the stack of K frames that ends at record `id` to `out` (K*C, H, W).
   void GatherStack(uint64_t id, Shift shift, uint8_t* out) const;
-  // Both observations of the element whose last step is `last`: stacks and goal pictures (I, H, W).
+  // Writes the two observations of an element whose last step is `last`: stacks and goal pictures
+  // (I, H, W).
   void GatherPictures(const BatchPlan::Element& element, uint64_t last, uint8_t* obs,
                       uint8_t* next_obs) const;
   void GatherVectors(const BatchPlan::Element& element, uint64_t last, std::span<const float> goal,

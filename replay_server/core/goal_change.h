@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Relabels a transition with another goal: replaces the desired goal in the vectors of both
-// observations, and recomputes the reward with the task's goal functions. The computation is the
-// actor's, bit for bit. Whether the episode terminated does not change, unless episodes end on
-// success: then the step that reaches the new goal terminates the episode.
+// Relabels a transition with another goal: replaces the desired goal in the vectors of the two
+// observations, and computes the reward again with the task's goal functions. The result is bit for
+// bit the reward that the actor would compute. Terminations do not change, except if episodes end
+// on success: then the step that reaches the new goal terminates the episode.
 //
-// A goal is the achieved goal of a stored record; G: its size. If goals are shown in pictures, the
-// frame of the record is the goal picture (batch_gather.h).
+// A new goal is the achieved goal of a stored record. If the policy observes goal pictures, the
+// frame of this record is the goal picture (batch_gather.h).
+//
+// Dimensions: G numbers of a goal, V size of the policy's vector, P size of the privileged vector.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +22,8 @@ namespace shoal::replay {
 
 class GoalChange {
  public:
-  // `privileged`: as in BatchOptions. CHECK: the records have both goals, and the policy sees the
-  // desired goal, as numbers or in a picture.
+  // `privileged`: as in BatchOptions. CHECKs that the records have the achieved and the desired
+  // goal, and that the policy observes the desired goal, as numbers or as a picture.
   GoalChange(const ObservationSpec& spec, tasks::Task task,
              std::span<const std::string> privileged = {}, bool end_on_success = false);
 
@@ -29,7 +31,7 @@ class GoalChange {
   std::span<const float> Achieved(const uint8_t* record) const;
   // Reward of the step that led to `record`, unscaled.
   float Reward(const uint8_t* record, std::span<const float> goal) const;
-  // Whether the step that led to `record` would have ended the episode, apart from time limits.
+  // Whether the step that led to `record` terminates the episode if `goal` is the goal.
   bool Terminated(const uint8_t* record, std::span<const float> goal) const;
   // Writes the goal into a policy's vector (V) and the privileged vector (P; may be empty), if they
   // contain the desired goal.
@@ -40,9 +42,9 @@ class GoalChange {
   const RecordLayout layout_;
   const tasks::Task task_;
   const bool end_on_success_;
-  ObservationSpec::Range achieved_;                // in a record's vector
-  std::optional<ObservationSpec::Range> desired_;  // in the policy's
-  std::optional<size_t> privileged_first_;         // in the privileged one
+  ObservationSpec::Range achieved_;                // achieved goal in a record's vector
+  std::optional<ObservationSpec::Range> desired_;  // desired goal in the policy's vector
+  std::optional<size_t> privileged_first_;  // start of the desired goal in privileged vectors
 };
 
 }  // namespace shoal::replay

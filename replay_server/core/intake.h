@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stores the records of an intake (common/intake/chunk_intake.h) in the ring, each linked to its
-// predecessor in the episode.
+// Stores the records of chunks (common/intake/chunk_intake.h) in the ring. Each stored record
+// refers to its predecessor in the episode.
 //
-// The counters are written after each record. If this process is killed, at most one stored record
-// is not counted yet; the constructor finds this record by its sequence.
+// The counters of a session are written after each record. If this process is killed between the
+// two writes, one stored record is not counted. The constructor of the next process finds this
+// record by its sequence.
 //
-// Threads: none inside; one owner.
+// Starts no threads; not thread-safe, one owner.
 #pragma once
 
 #include <cstdint>
@@ -21,9 +22,8 @@ namespace shoal::replay {
 
 class Intake final : private RecordTaker {
  public:
-  // Borrows ring, sessions and index. Counts records that were stored after the last write of their
-  // session's counters (the writer was killed between the two). Throws Error if the ring and the
-  // sessions disagree.
+  // Borrows ring, sessions and index. Counts a record that was stored but not counted when a former
+  // process was killed. Throws Error if the ring and the sessions disagree.
   Intake(uint64_t spec_hash, Ring* ring, SessionTable* sessions, EpisodeIndex* index);
   Intake(const Intake&) = delete;
   Intake& operator=(const Intake&) = delete;

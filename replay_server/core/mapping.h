@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mapped memory: a file or anonymous.
+// Mapped memory: a file, or anonymous memory.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@ namespace shoal::replay {
 enum class Access { kReadOnly, kReadWrite };
 
 // Owns the mapping and, for a file, its descriptor. A writable file is locked exclusively with
-// flock on the mapped descriptor; FileLock would lock the file that the path names at that time,
-// which may be another one. Move-only.
+// flock on the mapped descriptor. FileLock is not used, because it would lock the file that has the
+// path at the time of the lock, which may be another file. Move-only.
 class Mapping {
  public:
   Mapping() = default;
@@ -22,13 +22,15 @@ class Mapping {
   Mapping(Mapping&& other) noexcept { *this = std::move(other); }
   Mapping& operator=(Mapping&& other) noexcept;
 
-  // Zeroed memory of this process. Throws Error when there is no room (storage_limits.h).
+  // Maps zeroed memory of this process. Throws Error if there is not enough memory
+  // (storage_limits.h).
   static Mapping Anonymous(uint64_t bytes);
-  // A new file of zeros, every block reserved, so that a later write cannot fail. Throws
-  // Error, and leaves no file, when there is no room. A file of that name is replaced.
+  // Maps a new file of zeros, which replaces an existing file. All blocks of the file are reserved,
+  // so that a later write cannot fail. If there is not enough space, throws Error and leaves no
+  // file.
   static Mapping NewFile(const std::filesystem::path& path, uint64_t bytes);
-  // Maps a whole existing file. Throws Error if the file cannot be opened or is empty, or, for
-  // kReadWrite, if another process has the file open for writing.
+  // Maps a whole existing file. Throws Error if the file cannot be opened or is empty. For
+  // kReadWrite, also throws Error if another process has the file open for writing.
   static Mapping OpenFile(const std::filesystem::path& path, Access access);
 
   uint8_t* data() const { return data_; }

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Achieved-goal displacement sampling: a share of the samples is drawn in proportion to the
-// movement of the achieved goal in the rest of the episode, the others uniformly.
+// Motion sampling: a share of the samples is drawn in proportion to the movement of the achieved
+// goal in the rest of the episode. The other samples are drawn uniformly.
 //
 //   path:          movement(s) = sum over the steps k = s, ..., T of |achieved_k - achieved_(k-1)|
 //   displacement:  movement(s) = |achieved_T - achieved_(s-1)|
 //
-// where T is the episode's last step. An object that rattles between the fingers and ends at its
+// where T is the episode's last step. An object that moves between the fingers and returns to its
 // old place has a path but no displacement; hindsight learns from displacement.
 //
-// In tasks that move an object, most steps of an unskilled policy do not touch it, and every goal
-// of hindsight is already reached at the start. Energy-based prioritisation (Zhao and Tresp 2018,
-// arXiv:1810.01363) also prefers samples by movement; its weight is the energy of an episode. The
-// weight here belongs to a step, looks ahead, and needs neither mass nor time.
+// In tasks that move an object, an untrained policy does not touch the object in most steps, and
+// every goal of hindsight is then reached from the start. Energy-based prioritisation (Zhao and
+// Tresp 2018, arXiv:1810.01363) also prefers samples by movement; its weight is the energy of an
+// episode. The weight here belongs to a step, depends on the rest of the episode, and needs neither
+// mass nor time.
 #pragma once
 
 #include <cstdint>
@@ -28,13 +29,13 @@ namespace shoal::replay {
 
 enum class MovementKind { kPath, kDisplacement };
 
-// Episodes must have ended: EpisodeIndex with whole_episodes. Movement is counted in whole
-// micrometres and depends on no record older than the observation before the step, so that a
-// restarted server with the same ring draws the same samples. If nothing moves, all samples are
-// drawn uniformly.
+// The episodes of samples must have ended: use an EpisodeIndex with whole_episodes. Movement is a
+// whole number of micrometres, and does not depend on records before the step's observation.
+// Therefore a restarted server with the same ring draws the same samples. If no achieved goal
+// moves, all samples are drawn uniformly.
 class MovementSelector final : public Selector {
  public:
-  // Borrows ring, index and goals; share in [0, 1].
+  // Borrows ring, index and goals. share: in [0, 1].
   MovementSelector(const Ring& ring, const EpisodeIndex& index, const GoalChange& goals,
                    double share, MovementKind kind = MovementKind::kPath);
 
@@ -51,14 +52,15 @@ class MovementSelector final : public Selector {
  private:
   // Movement ahead of a step.
   struct Ahead {
-    uint64_t id = 0;  // of the step
-    uint64_t value =
-        0;  // kPath: micrometres to the episode's end; kDisplacement: id of the last step
+    uint64_t id = 0;  // id of the step
+    // kPath: micrometres until the end of the episode. kDisplacement: id of the episode's last
+    // step.
+    uint64_t value = 0;
   };
 
   size_t Slot(uint64_t id) const { return static_cast<size_t>(id % ring_.capacity()); }
-  // Movement from step `id` to the end of its ended episode; the predecessor of `id` must be
-  // stored.
+  // Movement from step `id` to the end of its episode, which must have ended. The predecessor of
+  // `id` must be stored.
   uint64_t MovementFrom(uint64_t id);
   // Distance between the achieved goals before step `from` and after step `to`, in micrometres.
   uint64_t Micrometres(uint64_t from, uint64_t to) const;
@@ -71,7 +73,7 @@ class MovementSelector final : public Selector {
   UniformSelector uniform_;
   WeightTree weights_;             // by slot; 0 = cannot be drawn
   std::vector<Ahead> ahead_;       // by slot; an entry with another id is not computed yet
-  std::vector<uint64_t> unknown_;  // work space of MovementFrom
+  std::vector<uint64_t> unknown_;  // temporary memory of MovementFrom
 };
 
 }  // namespace shoal::replay

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// DrQ random shift: pads each image by replicating its border, then crops back at a random offset.
-// Fused with the copy out of the ring: padding and crop are one read of each pixel.
+// DrQ's random shift: pads each image by repeating its border, then crops the original size at a
+// random offset. Padding and crop are a part of the copy from the ring, so each pixel is read once.
 //
 //   out[p, i, j] = in[p, clamp(i + dy, 0, H-1), clamp(j + dx, 0, W-1)]
-//   dx, dy ~ Uniform{-pad, ..., pad}, one pair per image, shared by all planes p of its stack.
+//   dx, dy ~ Uniform{-pad, ..., pad}, one pair for each stack, the same for all its planes p
 //
-// Source: Kostrikov et al. 2020, arXiv:2004.13649, section 3.1; their grid samples of whole-pixel
-// offsets are exactly this crop.
+// Source: Kostrikov et al. 2020, arXiv:2004.13649, section 3.1. The grid samples of the source, at
+// offsets of whole pixels, are exactly this crop.
 #pragma once
 
 #include <cstdint>
@@ -20,12 +20,11 @@ struct Shift {
   bool operator==(const Shift&) const = default;
 };
 
-// Draws dx, then dy. Always takes two random numbers, whatever the pad, so that later draws do not
-// depend on the pad.
+// Draws dx, then dy. Always draws two random numbers, so that later draws do not depend on `pad`.
 Shift DrawShift(int pad, Random* random);
 
-// in, out: (planes, height, width) uint8, row 0 = top. May not overlap. |dx| < width, |dy| < height
-// (CHECKed). Reentrant; no allocation.
+// Copies an image with the shift. in, out: (planes, height, width) uint8, row 0 = top; they must
+// not overlap. CHECKs that |dx| < width and |dy| < height. Reentrant; allocates no memory.
 void ShiftPlanes(const uint8_t* in, int planes, int height, int width, Shift shift, uint8_t* out);
 
 }  // namespace shoal::replay

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The replay server without threads, clocks and network: takes chunks and gives credits, takes
-// requests and gives batches. The core and its parts have one owner:
+// The replay server without threads, clocks and network: receives chunks and returns credits,
+// receives requests and returns batches. Not thread-safe; the core and its parts have one owner:
 //
 //   ring             stored records
 //   episode index    successors of records, sampleable steps
 //   intake           chunks -> ring
-//   session table    accounting
+//   session table    counts of stored, rejected and lost records
 //   policies         choice of samples and of their goals
 //   gather           ring -> batch
-//   rate limiter     ratio of samples to inserts: which side waits
+//   rate limiter     ratio of samples to inserts: whether actors or the learner must wait
 //   credit book      credits of the actors
 //   request queue    requests of the learner
 #pragma once
@@ -38,80 +38,87 @@
 
 namespace shoal::replay {
 
-// Number of steps n and discount between the two observations of a sample, from the configuration.
+// Number of steps n of a sample, and discount between these steps, from the configuration.
 NStep NStepOf(const Config& config);
 
-// Throws Error (usage) if no batch could ever be drawn, or if actors and learner could wait for
-// each other: a ring too small for min_size samples of n steps, a band too narrow for the limiter.
+// Throws Error (kUsage) if no batch could ever be drawn, because the ring is too small for min_size
+// samples of n steps, or if actors and learner could wait for each other, because the limiter's
+// band is too narrow.
 void CheckSampling(const RunConfig& run);
 
 // The answer to one request, without its bytes.
 struct DrawnBatch {
   SampleRequest request;
-  uint64_t stored_records = 0, stored_steps = 0, unsampleable_steps = 0;  // when it was drawn
+  uint64_t stored_records = 0, stored_steps = 0, unsampleable_steps = 0;  // at the time of the draw
 };
 
 // Counts since construction unless stated otherwise.
 struct CoreCounters {
   IntakeCounters intake;
   uint64_t batches = 0, repeated_batches = 0;
-  uint64_t relabelled = 0;        // batch elements with another goal than their own
+  uint64_t relabelled = 0;        // batch elements whose goal was replaced
   uint64_t zero_rewards = 0;      // batch elements of reward 0
-  uint64_t refused_requests = 0;  // wrong spec or wrong schema
-  uint64_t surplus_requests = 0;  // more than the learner has credits for
-  uint64_t stale_requests = 0;    // of a learner session that has been replaced
+  uint64_t refused_requests = 0;  // requests with a wrong spec or a wrong schema
+  uint64_t surplus_requests = 0;  // requests beyond the learner's credits
+  uint64_t stale_requests = 0;    // requests of a learner session that has been replaced
 };
 
 class ReplayCore {
  public:
-  // Opens or makes the ring in `folder` (or in memory, as configured). `replay_session` must grow
-  // from start to start. `former`: counts of the run's earlier servers; used only where they exceed
-  // those of the ring. `progress` is called often while an existing ring is read. Throws Error: no
-  // room, a ring that does not fit, a band that is too small.
+  // Opens or makes the ring in `folder` (or in memory, as configured). `replay_session` must
+  // increase from start to start. `former`: counts of the run's earlier servers; a count is used
+  // only if it is higher than the count in the ring. `progress` is called often while an existing
+  // ring is read. Throws Error if there is not enough space, if the ring does not fit the run, or
+  // if the band is too small.
   ReplayCore(const RunConfig& run, const std::filesystem::path& folder, uint64_t replay_session,
              const FormerServer& former = {}, const StartupProgress& progress = {});
-  // The parts refer to each other: neither copied nor moved.
+  // Neither copied nor moved, because the parts refer to each other.
   ReplayCore(const ReplayCore&) = delete;
   ReplayCore& operator=(const ReplayCore&) = delete;
 
-  // `latest_session`: as for Intake::Take.
+  // See ChunkIntake::Take.
   ChunkResult TakeChunk(const TransitionChunk& chunk,
                         uint64_t latest_session = std::numeric_limits<uint64_t>::max());
   RequestFate TakeRequest(const SampleRequest& request);
 
-  // Draws the next batch that is due and writes it to `data` (batch_schema().total_bytes(), aligned
-  // to 64). Empty if no request waits, or if the next request has to wait longer.
+  // Draws the batch of the next request and writes it to `data` (batch_schema().total_bytes()
+  // bytes, aligned to 64). Returns empty if there is no request or if the next request must wait
+  // longer.
   std::optional<DrawnBatch> TryAnswer(uint8_t* data);
-  // The request that TryAnswer would answer, if the request was answered before. If the caller
-  // still has the earlier batch, it sends this batch again and calls AnsweredAgain() instead of
-  // TryAnswer.
+  // The request that TryAnswer would answer now, if this request was answered before; else empty.
+  // If the caller still has the earlier batch, the caller sends the earlier batch again and calls
+  // AnsweredAgain() instead of TryAnswer.
   std::optional<SampleRequest> NextRepeated() const;
   void AnsweredAgain();
-  // The elements of the batch drawn last.
+  // The elements of the batch that was drawn last.
   const BatchPlan& last_plan() const { return last_plan_; }
 
-  // Credits to send to the actors: all, or only those that have changed since the last call.
+  // Credits to send to the actors: all credits, or only those that have changed since the last
+  // call.
   std::vector<Credit> TakeCredits(bool changed_only);
-  // CreditBook::Urgent, after the credit book was updated with the limiter's state and the budget.
+  // Updates the credit book with the limiter's state and the budget, and returns
+  // CreditBook::Urgent.
   bool CreditsUrgent();
-  // Answer to an actor with another spec, or to one that a newer session has replaced: contains
-  // this server's spec hash, the newest session and no credit.
+  // Answer to an actor that has another spec or that a newer session has replaced. It contains this
+  // server's spec hash, the actor's newest session and no credit.
   Credit Refusal(const TransitionChunk& chunk) const;
 
-  // Shares the copying of a batch (BatchGather::Gather); null: the calling thread copies.
+  // Sets the function that divides the copying of a batch among threads (BatchGather::Gather).
+  // Null: the calling thread copies.
   void SetGatherers(RunParts run) { gatherers_ = std::move(run); }
 
   void SetDraining(bool draining);
   bool draining() const { return draining_; }
-  // Sets the budget of env steps (initially the configured budget). Once so many env steps are
-  // stored, no actor gets credit any more. The budget does not apply while draining, nor in
+  // Sets the budget of env steps (initially the configured budget). After this number of env steps
+  // is stored, actors get no more credit. The budget does not apply while draining, and not in
   // lockstep, which has its own end.
   void SetBudget(uint64_t env_steps) { budget_ = env_steps; }
   void SetSamplesPerInsert(const Schedule& samples) { limiter_.SetSamplesPerInsert(samples); }
 
-  // Which side waits at present.
-  bool InsertsBlocked() const;  // an actor gets less than its window
-  bool SamplesBlocked() const;  // a request waits for the limiter, min size or after_steps
+  // Whether an actor has less credit than its window now.
+  bool InsertsBlocked() const;
+  // Whether a request waits for the limiter, for min_size or for after_steps now.
+  bool SamplesBlocked() const;
 
   const RunConfig& run() const { return run_; }
   const BatchSchema& batch_schema() const { return batch_schema_; }
@@ -120,7 +127,7 @@ class ReplayCore {
   const Ring& ring() const { return ring_; }
   const EpisodeIndex& index() const { return index_; }
   const SessionTable& sessions() const { return sessions_; }
-  // Whether an earlier server had stored records that are missing from this ring: they are lost.
+  // Whether an earlier server stored records that are missing in this ring. Such records are lost.
   bool ring_replaced() const { return ring_replaced_; }
   const RateLimiter& limiter() const { return limiter_; }
   const RequestQueue& requests() const { return requests_; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The choice of samples for a batch, and of their goals, by the configuration. A new selector or
-// relabeller needs a file of its own, its configuration keys, and a line here.
+// The selector and the relabeller that a configuration selects. A new selector or relabeller needs
+// a file of its own, its configuration keys, and a line here.
 #pragma once
 
 #include <cstdint>
@@ -26,8 +26,8 @@ ReplayPolicies MakePolicies(const RunConfig& run, const Ring& ring, const Episod
 
 IndexOptions IndexOptionsOf(const RunConfig& run);
 
-// Upper bound of the stored steps per actor session that become sampleable with a later record:
-// they wait for the n - 1 steps after them, or for the end of their episode.
+// Upper bound of the number of stored steps of an actor session that wait for a later record. A
+// step waits for the n - 1 steps after it, or for the end of its episode.
 uint64_t WaitingSteps(const RunConfig& run);
 
 }  // namespace shoal::replay

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Batch requests of the learner, answered in the order of their ids.
 //
-// The queue is bounded by the learner's credits. A new learner session discards the requests of the
-// old one. A request that arrives again while it waits is queued once. A request that was answered
-// is answered again, at no charge to the rate limiter. A request that the learner has finished with
-// is removed.
+// The number of requests is limited by the learner's credits. A new learner session discards the
+// requests of the old session. If a waiting request arrives again, it stays in the queue once. If a
+// request arrives again after it was answered, it is answered again; the rate limiter does not
+// count the second answer. A request that the learner has released is removed.
 //
-// Threads: none inside; one owner.
+// Starts no threads; not thread-safe, one owner.
 #pragma once
 
 #include <cstdint>
@@ -20,10 +20,10 @@ namespace shoal::replay {
 enum class RequestFate {
   kQueued,
   kAlreadyQueued,
-  kStale,        // of a learner session that has been replaced
-  kWrongSpec,    // another observation spec
-  kWrongSchema,  // other arrays, or arrays with another definition
-  kFull,         // more than the credits allow; the learner asks again
+  kStale,        // refused: the learner session has been replaced
+  kWrongSpec,    // refused: another observation spec
+  kWrongSchema,  // refused: other arrays, or arrays with another definition
+  kFull,         // refused: more requests than credits; the learner sends the request again
 };
 
 class RequestQueue {
@@ -33,9 +33,10 @@ class RequestQueue {
 
   RequestFate Offer(const SampleRequest& request);
 
-  // The next request, if it may be served now that `stored_steps` step records are stored.
+  // The next request, if the number of stored step records, `stored_steps`, is high enough for it;
+  // else empty.
   std::optional<SampleRequest> Next(uint64_t stored_steps) const;
-  // Whether the request was answered before: the learner did not get the batch.
+  // Whether the request was answered before. The learner then did not get the batch.
   bool Answered(const SampleRequest& request) const { return request.request <= answered_; }
   // Removes the request that Next() returned.
   void Pop();
@@ -47,7 +48,7 @@ class RequestQueue {
   const uint64_t spec_hash_, schema_hash_;
   const size_t credits_;
   uint64_t learner_session_ = 0;
-  uint64_t answered_ = 0;                      // highest request answered in this session
+  uint64_t answered_ = 0;                      // highest answered request of this session
   std::map<uint64_t, SampleRequest> waiting_;  // by request
 };
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ring file, version 3. All little-endian.
+// The ring file, version 3. All numbers are little-endian.
 //
 //   RingHeader, padded to 4096 bytes
-//   StoredSession[kMaxSessions]          accounting per (actor, session); two copies each
-//   slots[capacity], slot_bytes each     SlotHeader | record bytes verbatim (common/spec/record.h)
+//   StoredSession[kMaxSessions]          counters of each (actor, session), in two copies
+//   slots[capacity], slot_bytes each     SlotHeader | unchanged record (common/spec/record.h)
 //
-// Record ids run from 1 without holes; record `id` is in slot id mod capacity, so the ring holds
+// Record ids begin at 1, without gaps. Record `id` is in slot id mod capacity, so the ring contains
 // the newest `capacity` records.
 //
-// The file survives the death of the writing process at any instant, because the kernel owns its
-// pages. The file does not survive a power failure: nothing is synced. The commit word covers the
-// slot header, which contains the frame's check word, and the record up to its frame. A flipped bit
-// anywhere in a record is therefore detected.
+// The file survives the death of the writing process at any time, because the kernel owns the
+// pages. The file does not survive a power failure, because fsync is never called. The commit word
+// is a check word of the slot header and of the record up to its frame. The slot header contains
+// the frame's check word. A flipped bit anywhere in a record is therefore detected.
 #pragma once
 
 #include <cstdint>
@@ -30,23 +30,23 @@ struct RingHeader {
   char magic[8];
   uint32_t version;
   uint32_t max_sessions;
-  uint64_t spec_hash;  // of the observation spec
+  uint64_t spec_hash;  // hash of the observation spec
   uint64_t record_bytes;
   uint64_t slot_bytes;
   uint64_t capacity;  // slots
-  char run[72];       // name of the run that made it, for people; zero-terminated
-  uint64_t check;     // HashBytes of everything before
+  char run[72];       // name of the run that made the file, for people; zero-terminated
+  uint64_t check;     // HashBytes of all bytes before
 };
 static_assert(sizeof(RingHeader) == 128);
 
-// One copy of a session's counters. A session is updated by writing the copy that is not the
-// newest, its check word last: a writer that dies half-way leaves the other copy.
+// One copy of a session's counters. An update writes the older of the two copies, and writes the
+// check word last. If the writer dies during the update, the other copy stays valid.
 struct SessionCopy {
-  uint64_t check;    // HashBytes of everything after; 0 = never written
-  uint64_t version;  // grows with each update, from 1; the copy is number version mod 2
+  uint64_t check;    // HashBytes of all bytes after; 0 = never written
+  uint64_t version;  // number of the update, from 1; the update writes copy number version mod 2
   uint64_t session;
   uint64_t actor;
-  uint64_t highest;  // sequences 1..highest have been processed
+  uint64_t highest;  // sequences 1..highest have been handled
   uint64_t rejected;
   uint64_t after_gap;
   uint64_t lost;
@@ -62,8 +62,8 @@ struct SlotHeader {
   uint64_t commit;   // 0 = empty or being written; else SlotCommit(), written last
   uint64_t id;       // from 1
   uint64_t prev;     // id of the predecessor in the episode; 0 for a reset
-  uint64_t session;  // of the actor that made the record
-  uint64_t steps;    // step records stored up to and with this one, over the whole run
+  uint64_t session;  // session of the actor that made the record
+  uint64_t steps;    // number of step records of the whole run, up to and including this record
   uint32_t actor;
   uint32_t reserved;
   uint64_t frame_check;  // FrameCheck of the record's frame
@@ -74,7 +74,7 @@ static_assert(sizeof(SlotHeader) == 64);
 // Sizes and offsets of a ring. A value type.
 struct RingGeometry {
   uint64_t record_bytes = 0;
-  uint64_t prefix_bytes = 0;  // of a record before its frame: covered by the commit word
+  uint64_t prefix_bytes = 0;  // bytes of a record before its frame
   uint64_t capacity = 0;
 
   RingGeometry() = default;
@@ -95,10 +95,10 @@ inline std::span<const uint8_t> FrameOf(const RingGeometry& geometry, const uint
   return {record + geometry.prefix_bytes, geometry.record_bytes - geometry.prefix_bytes};
 }
 
-// The commit word of a slot: never 0.
+// The commit word of a slot. It is never 0.
 uint64_t SlotCommit(const RingGeometry& geometry, const SlotHeader& slot, const uint8_t* record);
 
-// Fills magic, version, sizes and check.
+// Makes a header with all its fields, including the check word.
 RingHeader MakeRingHeader(const RingGeometry& geometry, uint64_t spec_hash, const char* run);
 
 }  // namespace shoal::replay

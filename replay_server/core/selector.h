@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chooses the samples of a batch. A sample is named by its first step (episode_index.h).
+// Chooses the samples of a batch. The id of a sample is that of its first step (episode_index.h).
 //
-// The index reports each sample once when it can be drawn, and once when it can no longer be drawn.
-// The probabilities of the draws allow importance weights.
+// The episode index reports each sample to the selector when the sample becomes available, and
+// again when it becomes unavailable. The probability of a draw can be used for importance weights.
 //
-// Threads: none inside; one owner.
+// Starts no threads; not thread-safe, one owner.
 #pragma once
 
 #include <cstdint>
@@ -15,23 +15,23 @@
 namespace shoal::replay {
 
 struct Selection {
-  uint64_t id = 0;         // of the sample's first step
-  double probability = 0;  // of one draw, at present
+  uint64_t id = 0;         // id of the sample's first step
+  double probability = 0;  // probability of this sample in one draw
 };
 
 class Selector {
  public:
   virtual ~Selector() = default;
 
-  // Added: the sample that begins with step `id` can be drawn from now on. Removed: the sample can
-  // no longer be drawn.
+  // Added: called when the sample that begins with step `id` becomes available. Removed: called
+  // when the sample becomes unavailable.
   virtual void Added(uint64_t id) = 0;
   virtual void Removed(uint64_t id) = 0;
 
-  // Draws a sample; empty if none was found. Given the same history, the draw depends on `random`
-  // alone.
+  // Draws a sample; empty if no sample was found. After the same calls of Added and Removed, the
+  // result depends only on `random`.
   virtual std::optional<Selection> Draw(Random* random) = 0;
-  // Draws that had to be repeated since construction.
+  // Number of repeated draws since construction.
   virtual uint64_t redraws() const = 0;
 };
 

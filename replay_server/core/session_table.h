@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Accounting per actor session, kept in the ring's mapping so that it outlives the process.
+// Counts of stored, rejected and lost records for each actor session. The table is in the ring's
+// mapping, so that the counts survive the death of the process.
 #pragma once
 
 #include <cstdint>
@@ -11,23 +12,24 @@
 
 namespace shoal::replay {
 
-// State of an earlier server of the run, read from the account.
+// Counts of an earlier server of the run, read from accounting.json.
 struct FormerServer {
   uint64_t stored_steps = 0;
   std::vector<SessionCounters> sessions;
 };
 
-// An update is one step as seen by recovery.
+// Updates are atomic: if the process dies during an update, the table has the old or the new
+// counts.
 class SessionTable final : public SessionLedger {
  public:
-  // `storage` is borrowed. Sessions found there are loaded. Throws Error when one is damaged.
+  // Borrows `storage` and loads the sessions in it. Throws Error if a session is damaged.
   explicit SessionTable(std::span<StoredSession> storage);
 
-  // Adds the counts of an earlier server that exceed those of this table: its ring is gone, or this
-  // ring is an older copy. Records that the earlier server stored and this ring lacks are counted
-  // as lost.
+  // If counts of an earlier server are higher than those of this table, adopts the higher counts.
+  // The reason: the earlier server's ring was lost, or this ring is an older copy. Records that the
+  // earlier server stored and that are missing in this ring are counted as lost.
   void TakeOver(const FormerServer& former);
-  // Whether an earlier server had stored records that this ring lacks.
+  // Whether an earlier server stored records that are missing in this ring.
   bool StoresLessThan(const FormerServer& former) const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Storage that a replay needs for a configuration, for checks of available room.
+// Storage that the replay needs for a configuration, for checks of the available space.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,9 @@
 namespace shoal::replay {
 
 struct StorageNeeds {
-  uint64_t ring_bytes = 0;    // file or memory, by replay.storage
-  uint64_t memory_bytes = 0;  // beside the ring, in memory always
-  uint64_t batch_bytes = 0;   // of one batch
+  uint64_t ring_bytes = 0;    // ring, in a file or in memory (replay.storage)
+  uint64_t memory_bytes = 0;  // memory in addition to the ring
+  uint64_t batch_bytes = 0;   // one batch
 };
 
 StorageNeeds StorageNeedsOf(const RunConfig& run);

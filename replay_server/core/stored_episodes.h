@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole episodes in a ring: from the reset to the record that ended them. For `shoal replay
-// export`.
+// Whole episodes in a ring, from the reset to the last record, for `shoal replay export`.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +11,20 @@
 namespace shoal::replay {
 
 struct StoredEpisodes {
-  // Record ids, reset first (goal records are left out); the episode that ended first comes first.
+  // Record ids of each whole episode, the reset first, without goal records. Episodes are in the
+  // order of their ends.
   std::vector<std::vector<uint64_t>> whole;
-  uint64_t overwritten =
-      0;  // episodes without their first records; usually at most one per environment
-  uint64_t unended = 0;  // episodes that run or were cut: neither terminated nor truncated
+  // Number of episodes whose first records were overwritten; usually at most one per environment.
+  uint64_t overwritten = 0;
+  uint64_t unended = 0;  // number of episodes that have not ended or were cut
 };
 
-// Every record of the ring belongs to one of the episodes counted or listed. A server may be
-// writing to the ring meanwhile; CopyEpisode detects overwritten records.
+// Finds the episodes of a ring. Every record belongs to an episode that is listed or counted. A
+// server may be writing to the ring at the same time; CopyEpisode detects overwritten records.
 StoredEpisodes FindEpisodes(const Ring& ring);
 
-// The records of an episode one after the other, layout().record_bytes() each. Empty if a server
-// has overwritten one of them since.
+// The records of an episode one after the other, layout().record_bytes() bytes each. Empty if a
+// server has overwritten one of the records.
 std::optional<std::vector<uint8_t>> CopyEpisode(const Ring& ring, const std::vector<uint64_t>& ids);
 
 }  // namespace shoal::replay

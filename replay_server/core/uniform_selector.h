@@ -8,9 +8,10 @@
 
 namespace shoal::replay {
 
-// Draws ids of the whole ring until one is sampleable. The index knows which steps are sampleable,
-// so the selector keeps no list. Resets and steps whose frames are overwritten are few, so almost
-// every first draw succeeds. Borrows ring and index; same owner.
+// Draws ids of the whole ring until an id is sampleable. The episode index has this information, so
+// the selector keeps no list. Few records are not sampleable (resets, and steps whose frames are
+// overwritten), so almost every first draw succeeds. Borrows ring and index, which must have the
+// same owner as the selector.
 class UniformSelector final : public Selector {
  public:
   // If one step in a thousand is sampleable, the search fails with probability e^-100.

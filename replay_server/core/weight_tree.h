@@ -3,7 +3,8 @@
 // for cumulative frequency tables"). Weights are whole numbers, so that sums are exact and do not
 // depend on the order of changes.
 //
-// Threads: none inside; one owner. Memory: 16 bytes per weight. Setting and finding: log2(size).
+// Starts no threads; not thread-safe, one owner. Memory: 16 bytes per weight. Cost of Set and Find:
+// log2(size) steps.
 #pragma once
 
 #include <cstddef>
@@ -22,12 +23,13 @@ class WeightTree {
   void Set(size_t i, uint64_t weight);
   uint64_t Get(size_t i) const { return weights_[i]; }
   uint64_t total() const { return total_; }
-  // The smallest i for which the sum of the weights 0 .. i exceeds `at`; at < total().
+  // The smallest i for which the sum of the weights 0 .. i is greater than `at`. Requires at <
+  // total().
   size_t Find(uint64_t at) const;
 
  private:
   std::vector<uint64_t> weights_;
-  std::vector<uint64_t> sums_;  // [k]: sum of the weights k - (lowest bit of k) .. k - 1
+  std::vector<uint64_t> sums_;  // sums_[k]: sum of the weights k - (lowest bit of k) .. k - 1
   uint64_t total_ = 0;
 };
 

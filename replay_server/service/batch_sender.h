@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes batches to the link on a thread of its own, so that a slow network delays batches but not
-// intake.
+// Writes batches to the link on a separate thread, so that a slow network delays batches but not
+// the storing of records.
 //
-// Owns a few batch buffers. The service thread fills one and passes it to Send; the buffer is free
-// again when all parts are written or given up. If a batch is in a slot of shared memory, only the
-// slot message is sent; the caller owns the slot. A batch is given up if its learner session is
-// replaced, if no learner is connected, or if a part could not be written for kPartDeadline. The
-// learner then sends its request again.
+// Owns a few batch buffers. The service thread fills a buffer and passes it to Send. The buffer is
+// free again after all parts are written, or after the sender has dropped the batch. If a batch is
+// in a slot of shared memory, only the slot message is sent; the caller owns the slot. A batch is
+// dropped if its learner session is replaced, if no learner is connected, or if a part could not be
+// written for kPartDeadline. The learner then sends its request again.
 #pragma once
 
 #include <atomic>
@@ -27,14 +27,14 @@
 
 namespace shoal::replay {
 
-// Destination of the sender: the link, or a fake.
+// Destination of the sender: the link, or a fake in tests.
 class PartWriter {
  public:
   virtual ~PartWriter() = default;
-  // False if the message was not sent within the writer's own deadline.
+  // Sends a message. Returns false if the message was not sent within the writer's own deadline.
   virtual bool Write(const BatchPart& part) = 0;
   virtual bool Write(const BatchSlot& slot) = 0;
-  // Whether a learner is connected that reads parts, or slot messages.
+  // Whether a reader of parts, or of slot messages, is connected.
   virtual bool HasPartReader() = 0;
   virtual bool HasSlotReader() = 0;
 };
@@ -44,22 +44,22 @@ class BatchSender {
   static constexpr std::chrono::seconds kReaderDeadline{2};
   static constexpr std::chrono::seconds kPartDeadline{6};
 
-  // Borrows the writer. `on_free` is called on the sender's thread whenever a buffer is free again.
+  // Borrows the writer. `on_free` is called on the sender's thread each time a buffer becomes free.
   BatchSender(uint64_t spec_hash, uint64_t batch_bytes, int buffers, PartWriter* writer,
               std::function<void()> on_free);
-  // Gives up the batches that are not sent yet.
+  // Drops the batches that are not sent yet.
   ~BatchSender();
   BatchSender(const BatchSender&) = delete;
   BatchSender& operator=(const BatchSender&) = delete;
 
-  // A free buffer of batch_bytes, aligned to 64, or nullptr while all buffers are being sent. The
-  // buffer stays free until Send().
+  // Returns a free buffer of batch_bytes bytes, aligned to 64, or nullptr if all buffers are in
+  // use. The buffer stays free until Send().
   uint8_t* FreeBuffer();
   // Sends the batch in the buffer that FreeBuffer() returned.
   void Send(const DrawnBatch& batch, uint8_t* buffer);
   // Sends the message of a filled slot, unless the same message already waits to be sent.
   void Send(const BatchSlot& slot);
-  // Batches of other sessions are given up from now on.
+  // Sets the learner session. Batches of other sessions are dropped from now on.
   void SetLearnerSession(uint64_t session) { learner_session_ = session; }
 
   uint64_t sent() const { return sent_; }
@@ -76,9 +76,9 @@ class BatchSender {
   using Outgoing = std::variant<BufferedBatch, BatchSlot>;
 
   void Run();
-  // Waits for the next batch to send. Empty when stopping.
+  // Waits for the next batch to send. Returns empty when the sender stops.
   std::optional<Outgoing> TakeNext();
-  // Waits between tries; returns early when stopping.
+  // Waits between two tries. Returns early when the sender stops.
   void Pause();
   bool SendBatch(const BufferedBatch& outgoing);
   bool SendBatch(const BatchSlot& slot);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures ages as data passes through the replay: the policy lag of stored records, the time until
-// a record is stored, and the age of the steps in a batch.
+// Measures the age of data in the replay: the policy lag of stored records, the time until a record
+// is stored, and the age of the steps in a batch.
 //
-// The number of finished updates follows from the learner's requests: with C requests outstanding,
-// request r is sent when update r - C begins, so r - C - 1 updates are done.
+// The number of finished updates is computed from the learner's requests. With C outstanding
+// requests, request r is sent when update r - C begins; at this time, r - C - 1 updates are
+// finished.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +17,8 @@
 
 namespace shoal::replay {
 
-// Times are wall-clock nanoseconds since 1970; ages between hosts are as exact as their clocks. One
-// thread.
+// Times are wall-clock nanoseconds since 1970. If actor and replay are on different hosts, an age
+// is only as exact as the clocks of the hosts. Only one thread may use an object.
 class FlowAges {
  public:
   FlowAges(const RecordLayout& layout, int request_credits)

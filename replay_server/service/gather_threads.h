@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Threads that copy the frames of a batch beside the service's own thread (replay.threads).
+// Threads that copy the frames of a batch together with the service's own thread (replay.threads).
 #pragma once
 
 #include <atomic>
@@ -12,13 +12,13 @@
 
 namespace shoal::replay {
 
-// The number of threads for the next second. `share`: part of the service's time that drawing and
-// copying batches by `threads` threads took in the last second. One more thread if `share` is above
-// one half; one fewer if the remaining threads would need less than 0.4. At most `most`, which is
-// at least 1.
+// Returns the number of threads for the next second. `share`: share of the last second in which the
+// service drew and copied batches with `threads` threads. Returns one thread more if `share` is
+// above 0.5, and one thread fewer if the share with this number would be below 0.4. The result is
+// at most `most`, which must be at least 1.
 int GatherThreadsFor(double share, int threads, int most);
 
-// Called by one thread. The threads sleep between batches.
+// Only one thread may call the functions. The other threads sleep between batches.
 class GatherThreads {
  public:
   explicit GatherThreads(int threads = 1) { Resize(threads); }
@@ -30,22 +30,22 @@ class GatherThreads {
   void Resize(int threads);
   int threads() const { return static_cast<int>(helpers_.size()) + 1; }
 
-  // RunParts (batch_gather.h). `part` must not throw.
+  // See RunParts (batch_gather.h). `part` must not throw.
   void Run(int parts, const std::function<void(int part)>& part);
 
  private:
-  // Runs parts of the present job that no thread has taken yet, until none are left.
+  // Runs parts of the present job that no other thread has taken, until all parts are taken.
   void TakeParts();
   void Serve();
 
   Mutex mutex_;
-  ConditionVariable changed_;  // a job begins or ends, or the threads shall exit
+  ConditionVariable changed_;  // notified when a job begins or ends, or when the threads must exit
   const std::function<void(int)>* job_ SHOAL_GUARDED_BY(mutex_) = nullptr;
-  uint64_t jobs_ SHOAL_GUARDED_BY(mutex_) = 0;  // so far
-  int busy_ SHOAL_GUARDED_BY(mutex_) = 0;       // helpers that may still work on the job
+  uint64_t jobs_ SHOAL_GUARDED_BY(mutex_) = 0;  // number of jobs so far
+  int busy_ SHOAL_GUARDED_BY(mutex_) = 0;       // number of helpers that may still work on the job
   bool leaving_ SHOAL_GUARDED_BY(mutex_) = false;
-  int parts_ = 0;              // of the job; set before it is announced
-  std::atomic<int> taken_{0};  // parts that a thread has taken
+  int parts_ = 0;              // number of parts of the job; set before the job is announced
+  std::atomic<int> taken_{0};  // number of parts that threads have taken
   std::vector<Thread> helpers_;
 };
 

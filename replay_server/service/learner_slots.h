@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shared memory in which the present learner session receives its batches. Batches are sent over
-// the network if the learner accepts no slots, could not open the memory, or there is no room. The
-// choice and its reason are logged once per session.
+// the network if the learner does not accept slots, if it could not open the memory, or if there is
+// not enough memory. The choice and its reason are logged once for each session.
 //
-// Threads: none inside; used by the service thread.
+// Starts no threads; used by the service thread.
 #pragma once
 
 #include <cstdint>
@@ -18,15 +18,16 @@ namespace shoal::replay {
 
 class LearnerSlots {
  public:
-  // `slots`: most batches that a learner may have requested and hold at once. `room`:
-  // AvailableMemory, or a fake.
+  // `slots`: largest number of batches that a learner may have requested or use at one time.
+  // `room`: AvailableMemory, or a fake in tests.
   LearnerSlots(
       uint64_t spec_hash, uint64_t batch_bytes, uint32_t slots,
       std::function<MemoryRoom()> room = [] { return AvailableMemory(); });
 
-  // Call for every request of the present learner session or of a newer one, repeats included.
+  // Call this function for every request of the present learner session or of a newer session,
+  // including repeated requests.
   void OnRequest(const SampleRequest& request);
-  // nullptr: batches are sent over the network.
+  // The writer of the slots; nullptr if batches are sent over the network.
   SlotWriter* writer() { return writer_ ? &*writer_ : nullptr; }
   uint32_t held() const { return writer_ ? writer_->held() : 0; }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Logs losses and refusals, each kind in one line per interval, with counts.
+// Logs how many records were lost, and how many records and requests were refused: in each interval
+// one line for each kind of problem.
 #pragma once
 
 #include <cstdint>
@@ -17,12 +18,12 @@ class ProblemLog {
   ProblemLog(uint64_t spec_hash, const BatchSchema& schema)
       : spec_hash_(spec_hash), schema_(schema), intake_(spec_hash, "replay server") {}
 
-  // Remembers the example that the next line will name.
+  // Stores the chunk's problem as the example for the next line.
   void Note(const TransitionChunk& chunk, const ChunkResult& result) {
     intake_.Note(chunk, result);
   }
   void NoteRefused(const SampleRequest& request) { refused_request_ = request; }
-  // Logs the counts that have grown since the last line, at most once per
+  // Logs the counts that have increased since the last report, at most once in each
   // IntakeProblems::kInterval.
   void Report(SteadyTime now, const CoreCounters& counters, uint64_t dropped_chunks);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The replay server. The thread that calls Run() owns the core; service_inbox.h connects this
-// thread with the link's threads, batch_sender.h with the sender's thread.
+// The replay server. The thread that calls Run() owns the core. service_inbox.h connects this
+// thread with the link's threads, and batch_sender.h connects it with the sender's thread.
 #pragma once
 
 #include <cstdint>
@@ -35,17 +35,18 @@
 
 namespace shoal::replay {
 
-// Members are in construction order. Destruction in reverse order ends the readers' callbacks and
-// the sender before the objects that they use.
+// Members are in construction order. They are destroyed in reverse order, so that the readers'
+// callbacks and the sender end before the objects that they use.
 class ReplayService {
  public:
-  // Makes the replay server `name` of the run in `folder`. Takes over the ring of an earlier
-  // server, which can take minutes to read. Borrows the hub. Throws Error.
+  // Makes the replay server `name` of the run in `folder`. If an earlier server left a ring, reads
+  // this ring, which may take minutes. Borrows the hub. Throws Error.
   ReplayService(const std::filesystem::path& folder, const ProcessName& name, link::Hub& hub);
 
-  // Serves until the coordinator orders a stop (returns 0), a stop is requested (0), or the
-  // coordinator is lost (1, after storing the records that actors still send). Writes
-  // accounting.json; returns kUnwrittenExit if the file cannot be written. Throws Error.
+  // Serves until the coordinator or a signal requests a stop, or until the coordinator is lost.
+  // Then writes accounting.json and returns the exit code: 0 after a stop request; 1 if the
+  // coordinator was lost, after storing the records that actors still send; kUnwrittenExit if the
+  // file cannot be written. Throws Error.
   int Run();
 
  private:
@@ -54,14 +55,14 @@ class ReplayService {
   SendingWindow Window() const;
   size_t MaxChunks() const;
 
-  // Throws Error (usage): a restart would find the same full session table.
+  // Throws Error (kUsage) because the session table is full. A restart would have the same result.
   [[noreturn]] static void RefuseMoreSessions();
 
-  // Reports progress while a cold ring is read, which takes minutes; a silent process would be
-  // declared hung.
+  // Reports progress during the reading of a ring, which may take minutes. A process without
+  // reports would be treated as hung.
   void ReportStarting();
 
-  // One turn of the service: takes arrivals, answers one request, sends changed credits and
+  // One turn of the service: handles arrivals, answers one request, sends changed credits and
   // progress.
   void Turn();
 
@@ -87,17 +88,17 @@ class ReplayService {
   void Publish(const std::vector<Credit>& credits);
 
   // If replay.threads = 0, chooses the number of gather threads for the next second from the load
-  // of the last one.
+  // of the last second.
   void ChooseGatherers(SteadyTime now);
 
   void Report(const char* state);
 
   RunAccount AccountNow() const;
 
-  // Keeps storing records after the coordinator is lost, until the actors stop sending.
+  // After the coordinator is lost, continues to store records until the actors stop sending.
   void DrainAfterCoordinatorLoss();
 
-  // Returns false if the account could not be written.
+  // Returns false if accounting.json could not be written.
   bool Finish();
 
   const std::filesystem::path folder_;
@@ -127,13 +128,13 @@ class ReplayService {
   WriteFaults faults_{[](const std::string& line) { log::Warning("{}", line); }};
   ServiceSeconds seconds_;
   SteadyTime last_turn_{}, last_credits_{}, last_chunk_{};
-  SteadyTime last_choice_{};  // of gatherers
-  double sampling_then_ = 0;  // seconds_.sampling at that time
+  SteadyTime last_choice_{};  // time of the last ChooseGatherers
+  double sampling_then_ = 0;  // seconds_.sampling at the time last_choice_
   SteadyTime last_told_{};
   std::optional<SteadyTime> progress_told_;
   uint64_t told_records_ = 0;
   bool credits_wait_ = false;  // changed credits are being collected before they are sent
-  bool answered_ = false;      // the last turn answered a request: another may be due
+  bool answered_ = false;      // the last turn answered a request, so another request may be due
 };
 
 }  // namespace shoal::replay

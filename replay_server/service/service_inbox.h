@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Queue from the DDS receive threads to the service thread: chunks, copied into pooled buffers, and
-// batch requests. Everything is bounded. Messages that do not fit are dropped and counted; their
-// sender sends them again.
+// Queue from the DDS receive threads to the service thread. It contains chunks, copied into pooled
+// buffers, and batch requests. The number of chunks and of requests is bounded. Messages beyond
+// these bounds are dropped and counted; the senders send them again.
 #pragma once
 
 #include <cstdint>
@@ -20,30 +20,33 @@ class ServiceInbox {
  public:
   static constexpr size_t kMaxRequests = 256;
 
-  // `chunk_bytes`: largest payload. `max_chunks`: buffers at most, allocated when first needed.
+  // `chunk_bytes`: largest payload. `max_chunks`: largest number of buffers; a buffer is allocated
+  // at its first use.
   ServiceInbox(uint64_t spec_hash, uint64_t chunk_bytes, size_t max_chunks)
       : pool_(spec_hash, chunk_bytes, max_chunks) {}
 
-  // The receive threads call both functions, which take one lock briefly and copy outside of it.
-  // The payload of a chunk is omitted if the chunk has another spec or is larger than chunk_bytes.
+  // The receive threads call these two functions, which hold a lock briefly and copy without the
+  // lock. The payload of a chunk is not copied if the chunk has another spec or is larger than
+  // chunk_bytes.
   void OnChunk(const TransitionChunk& chunk);
   void OnRequest(const SampleRequest& request);
-  // Any thread: makes the present Wait(), or else the next one, return.
+  // Makes the present Wait() return or, if no thread is in Wait(), the next Wait(). Any thread.
   void Wake();
 
   struct Arrivals {
     std::deque<std::unique_ptr<PooledChunk>> chunks;
     std::deque<SampleRequest> requests;
   };
-  // Service thread: returns everything that arrived, in order. Waits for an arrival or Wake(),
-  // until `deadline`.
+  // Service thread: waits until `deadline` for an arrival or Wake(), and returns all messages that
+  // arrived, in order.
   Arrivals Wait(SteadyTime deadline);
   // Service thread: returns a buffer to the pool.
   void Release(std::unique_ptr<PooledChunk> chunk) { pool_.Release(std::move(chunk)); }
   void SetMaxChunks(size_t max_chunks) { pool_.SetMaxChunks(max_chunks); }
 
-  // Depth: waiting chunks and requests. The others: messages dropped since construction.
+  // Number of waiting chunks and requests.
   size_t Depth() const;
+  // Number of messages that were dropped since construction.
   uint64_t DroppedChunks() const { return pool_.Dropped(); }
   uint64_t DroppedRequests() const;
 

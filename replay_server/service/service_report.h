@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The replay's report, once a second. Counts are since the process started; stored_records and
-// stored_steps count the whole run.
+// The replay's metrics report, once a second. Counts begin at the start of the process, except
+// stored_records and stored_steps, which are totals of the whole run.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ struct ServiceSeconds {
   double inserting = 0;  // storing chunks in the ring
   double sampling = 0;   // drawing batches from the ring
   double idle = 0;       // waiting for chunks or requests
-  // Time in which inserts or samples were held back; it overlaps the times above.
+  // Time in which credit or batches were withheld. This time overlaps the times above.
   double blocked_insert = 0, blocked_sample = 0;
 };
 
@@ -40,12 +40,12 @@ class ServiceReport {
         gatherers_(gatherers),
         report_(name) {}
 
-  // Notes how long a chunk waited in the inbox.
+  // Records the time that a chunk waited in the inbox.
   void NoteQueueAge(double seconds) { queue_age_seconds_ = std::max(queue_age_seconds_, seconds); }
   // Counts a batch that was drawn into a slot.
   void NoteSlotBatch() { ++slot_batches_; }
   bool Due(SteadyTime now) { return report_.Due(now); }
-  // Computes all figures of the report. Empties the windows of `ages`.
+  // Computes all metrics of the report. Empties the windows of `ages`.
   const MetricsMessage& Make(const std::string& state, const ServiceSeconds& seconds,
                              FlowAges* ages);
 
@@ -64,7 +64,7 @@ class ServiceReport {
   const GatherThreads& gatherers_;
   MetricsReport report_;
   uint64_t slot_batches_ = 0;
-  double queue_age_seconds_ = 0;  // largest of the interval
+  double queue_age_seconds_ = 0;  // largest value in the interval
 };
 
 }  // namespace shoal::replay

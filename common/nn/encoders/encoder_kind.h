@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kinds of encoder: networks from pixels to a feature map. Each kind has its own file; the key
-// `network.encoder` selects the kind.
+// Kinds of encoder. An encoder is a network that maps pixels to a feature map. Each kind has its
+// own file; the key `network.encoder` selects the kind.
 //
 // A new kind needs a file in this folder, a declaration below, a line in the list of
-// encoder_kind.cpp and a choice of the key (common/config/config_keys.cpp).
+// encoder_kind.cpp, and an entry in the key's list of choices (common/config/config_keys.cpp).
 #pragma once
 
 #include <initializer_list>
@@ -18,12 +18,12 @@ namespace shoal::nn {
 
 struct EncoderKind {
   std::string_view name;
-  // Appends the encoder's layers to a plan whose input are stacks of frames, (K*C, H, W).
-  // Parameters are named `prefix`.conv{i}.* for convolution i, or `prefix`.NAME with torchvision's
-  // NAME.
+  // Appends the encoder's layers to a plan whose input is a stack of K frames (C, H, W), as (K*C,
+  // H, W). Parameters are named `prefix`.conv{i}.* for convolution i, or `prefix`.NAME with
+  // torchvision's NAME.
   void (*add)(const NetworkConfig& network, const std::string& prefix, NetworkPlan* plan);
-  // The default trunk of this encoder: the number of its outputs, and whether it is linear and ReLU
-  // instead of linear, LayerNorm and tanh.
+  // The default trunk of this encoder: the number of outputs, and whether the trunk is linear and
+  // ReLU (true) or linear, LayerNorm and tanh (false).
   int features = 50;
   bool relu_trunk = false;
 };
@@ -46,7 +46,7 @@ void AddAlexnet(const NetworkConfig& network, const std::string& prefix, Network
 void AddSpatialSoftmax(const NetworkConfig& network, const std::string& prefix, NetworkPlan* plan);
 
 std::span<const EncoderKind> EncoderKinds();
-// Throws Error (kUsage) that names an unknown kind and lists the existing ones.
+// If there is no kind of this name, throws Error (kUsage) that lists the existing kinds.
 const EncoderKind& FindEncoderKind(std::string_view name);
 
 // The convolutions of drq and mrq: 32 filters of 3x3 without padding for each stride, on images at
@@ -54,7 +54,7 @@ const EncoderKind& FindEncoderKind(std::string_view name);
 void AddConvolutions(const NetworkConfig& network, const std::string& prefix,
                      std::initializer_list<int> strides, NetworkPlan* plan);
 
-// Initialisation of the parameters according to the configuration.
+// The initialisation of parameters that the configuration selects.
 Initialisation InitialisationOf(const NetworkConfig& network);
 
 }  // namespace shoal::nn

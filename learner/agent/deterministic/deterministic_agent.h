@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The common part of TD3 and DDPG: a deterministic actor trained by its critic's gradient, targets
-// of both, and one update of a batch. Equations are numbered in docs/algorithm.md.
+// The common part of TD3 and DDPG: a deterministic actor that the critic's gradient trains, targets
+// of actor and critic, and the update with one batch. Equations are numbered in docs/algorithm.md.
 //
 //   1. targets   next_obs -> encoder -> target actor, target critic -> y           (Eq. 18, 15)
 //   2. critic    obs -> encoder -> critic -> loss -> encoder and critic step            (Eq. 6)
@@ -8,10 +8,10 @@
 //   4. targets of actor and critic follow                                               (Eq. 9)
 //   5. the averaged policy follows encoder and actor                                   (Eq. 12)
 //
-// Step 3 runs in every actor_period-th update and step 4 in every target_period-th, counted from 1,
-// so the critic is updated first. As in SAC, only the critic's loss trains the encoder, which has
-// no target. With batch normalisation, the encoder uses running statistics in step 1, and
-// statistics of the batch in steps 2 and 3.
+// Step 3 runs in every actor_period-th update, and step 4 in every target_period-th update. Updates
+// are counted from 1, so the first updates may train only the critic. As in SAC, only the critic's
+// loss trains the encoder, and the encoder has no target. With batch normalisation, the encoder
+// uses running statistics in step 1, and statistics of the batch in steps 2 and 3.
 //
 // Sources: Lillicrap et al. 2015, arXiv:1509.02971; Fujimoto et al. 2018, arXiv:1802.09477.
 #pragma once
@@ -28,14 +28,14 @@
 namespace shoal::learner {
 
 struct DeterministicOptions {
-  int critics = 2;  // Q functions; a target is the smallest of them
-  // Standard deviation of the noise on a target's action, and the bound to which the noise is
-  // clipped; 0 for no noise.
+  int critics = 2;  // number of Q functions; a target uses the smallest of their target values
+  // Standard deviation of the noise on a target's action (0 for no noise), and the bound to which
+  // the noise is clipped.
   double target_noise = 0, target_noise_clip = 0;
 };
 
-// Figures in the order of an update. The actor's figures exist only if the update trains the actor;
-// the last two need a second critic.
+// Metrics of an update, in the order of its report. The actor's metrics exist only if the update
+// trains the actor. The last two metrics exist only if there is a second critic.
 inline constexpr const Figure* kTwinFigures[] = {
     &kCriticLoss, &kQMean,         &kTargetMean,       &kCriticGradNorm,
     &kActorLoss,  &kActorGradNorm, &kActionSaturation, &kLearningRate,

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows of a rollout, gathered into a batch of the networks' size. The host gathers the rows,
+// Rows of a rollout, copied into a batch of the networks' batch size. The host copies the rows,
 // because a minibatch is an input of the engine, like a batch of the replay server.
 //
-// Dimensions: N rows of the rollout, B rows of the minibatch.
+// Dimensions: N rows of the rollout, B rows of the minibatch, K frames of a stack, (C, H, W) of a
+// frame, V vector size, A actions.
 #pragma once
 
 #include <cstddef>
@@ -19,14 +20,14 @@ class Minibatch {
  public:
   Minibatch(const ObservationSpec& spec, int batch);
 
-  // Copies the observations of these rows, at most B; the rest of the minibatch does not change.
-  // frames (N, K*C, H, W), vectors (N, V).
+  // Copies the observations of at most B rows to the first rows of the minibatch. The other rows of
+  // the minibatch do not change. frames: (N, K*C, H, W); vectors: (N, V).
   void TakeObservations(std::span<const uint8_t> frames, std::span<const float> vectors,
                         std::span<const int> rows);
   // Copies B rows of the rollout: observations, rewards, drawn actions, log-probabilities.
   void Take(const BatchView& rollout, std::span<const int> rows);
 
-  // Valid until the next change. Arrays that are not taken are empty.
+  // View of the minibatch, valid until the next change. Arrays that Take does not copy are empty.
   BatchView View();
 
  private:

@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// Proximal policy optimisation: one update learns from a whole rollout, in several passes over it
-// by minibatches. Equations are numbered in docs/algorithm.md.
+// Proximal policy optimisation: one update learns from a whole rollout. The update makes several
+// passes (epochs) over the rollout, in minibatches. Equations are numbered in docs/algorithm.md.
 //
 //   1. rewards      divided by the running deviation of returns, if configured
-//   2. values       computed for every observation, before the update
-//   3. advantages   and value targets                                          (Eq. 23)
+//   2. values       computed for every observation, before the first epoch
+//   3. advantages   computed together with value targets                       (Eq. 23)
 //   4. epochs       minibatches of learner.batch rows, in a new order in each epoch: loss (Eq. 22,
 //                   24), gradients clipped to learner.max_grad_norm, one step of Adam with
-//                   eps 1e-5; the epochs end early once the policy has moved by
+//                   eps 1e-5; the epochs end early if the policy has moved by more than
 //                   1.5 ppo.target_kl
-//   5. observations of the rollout are added to the normalisation statistics, for the next policy:
-//                   this policy's log-probabilities were computed with the old statistics
+//   5. statistics   the rollout's observations are added to the normalisation statistics. This is
+//                   the last step, because the log-probabilities of this rollout were computed with
+//                   the old statistics
 //
-// If the rows do not fill whole minibatches (a rollout of fewer environments than usual), an epoch
-// leaves out the remaining rows. Which rows are left out differs between epochs.
+// If the number of rows is not a multiple of learner.batch (a rollout of fewer environments than
+// usual), each epoch leaves out the remaining rows. Different epochs leave out different rows.
 //
-// Sources: Schulman et al. 2017, arXiv:1707.06347; details follow ppo.py of Stable-Baselines3;
-// tests/learner/agent/sb3_ppo_test.cpp compares both.
+// Sources: Schulman et al. 2017, arXiv:1707.06347. Details follow ppo.py of Stable-Baselines3;
+// tests/learner/agent/sb3_ppo_test.cpp compares the two implementations.
 #pragma once
 
 #include <functional>
@@ -54,14 +55,14 @@ inline constexpr const Figure* kPpoFigures[] = {
     &kGradNorm,     &kDeviation,  &kClipRange,        &kLearningRate, &kMinibatches,
     &kRolloutSteps, &kRolloutLag, &kExplainedVariance};
 
-// The order in which an epoch goes through `rows` rows.
+// Returns the order in which an epoch uses the rows 0 .. rows - 1.
 using RowOrder = std::function<std::vector<int>(int rows, Random* random)>;
 std::vector<int> ShuffledRows(int rows, Random* random);
 
-// Throws Error (kUsage) if the configuration does not fit.
+// See Algorithm::make. Throws Error (kUsage) if the configuration does not fit.
 std::unique_ptr<Agent> MakePpoAgent(const Config& config, const ObservationSpec& spec,
                                     Engine* engine);
-// Same as above with a given order of rows, to compare with other programs.
+// Does the same with a given order of rows, for comparisons with other programs.
 std::unique_ptr<Agent> MakePpoAgent(const Config& config, const ObservationSpec& spec,
                                     Engine* engine, RowOrder order);
 

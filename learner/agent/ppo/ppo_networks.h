@@ -2,10 +2,12 @@
 // The policy and the value function of PPO: two networks, each with its own encoder if there are
 // pixels, or one network with both outputs (ppo.networks).
 //
-//   separate   encoder -> actor: mean (A);   value.encoder -> value: V
-//   shared     encoder -> actor: mean (A), V
+//   separate   encoder -> actor: mean (A);   value.encoder -> value: 1 output
+//   shared     encoder -> actor: mean (A) and 1 output for the value
 //
-// The policy's log deviation (A) is a parameter. Dimensions: B minibatch, A actions, V vector size.
+// The policy's log deviation (A) is a parameter.
+//
+// Dimensions: B minibatch, K frames of a stack, (C, H, W) of a frame, V vector size, A actions.
 #pragma once
 
 #include <memory>
@@ -23,22 +25,24 @@
 
 namespace shoal::learner {
 
-// One thread, under a ThreadScope of the engine's threads. Borrows the engine.
+// Only one thread may use an object, under a ThreadScope with the engine's number of threads.
+// Borrows the engine.
 class PpoNetworks {
  public:
-  // Initialised from config.seed.
+  // Initialises the networks from config.seed.
   PpoNetworks(const Config& config, const ObservationSpec& spec, Engine* engine);
 
-  // Frames (B, K*C, H, W), unread without pixels; vector (B, V), normalised.
+  // Computes mean and value. frames: (B, K*C, H, W), not read without pixels; vector: (B, V),
+  // normalised.
   void Forward(Frames frames, Array vector);
-  // Computes the value alone; shared networks also compute the policy.
+  // Computes only the value; a shared network also computes the mean.
   void ForwardValue(Frames frames, Array vector);
   Array mean() const;                                // (B, A) of the latest Forward
   Array value() const;                               // (B) of the latest Forward or ForwardValue
   nn::ParameterSet* log_std() { return &log_std_; }  // (A)
 
-  // Computes the gradients of all parameters except the log deviation, from the gradients of mean
-  // (B, A) and value (B), for the latest Forward.
+  // Computes the gradients of all parameters except the log deviation for the latest Forward, from
+  // the gradients of mean (B, A) and value (B).
   void Backward(Array mean_gradient, Array value_gradient);
 
   // Parameter sets that one optimiser steps, and the modules that a step changes.
@@ -66,7 +70,7 @@ class PpoNetworks {
   Engine* const engine_;
   const int action_size_;
   Network actor_;
-  std::unique_ptr<Network> own_value_;  // null: shared
+  std::unique_ptr<Network> own_value_;  // null for a shared network
   nn::ParameterSet log_std_;
   // Only a shared network has these: (B, A), (B), (B, A + 1).
   Array shared_mean_, shared_value_, shared_gradient_;

@@ -15,15 +15,18 @@
 
 namespace shoal::learner {
 
-// r' = clip(r / sqrt(Var(G) + 1e-8), -10, 10),   G_t = discount G_{t-1} + r_t, from 0 in each
-// episode
+// Scales rewards r to r', with the returns G so far in the episode:
+//
+//   r' = clip(r / sqrt(Var(G) + 1e-8), -10, 10),   G_t = discount G_{t-1} + r_t
+//
+// G starts at 0 in each episode.
 class RewardScale {
  public:
   explicit RewardScale(double discount) : discount_(discount) {}
 
-  // Adds the rewards (N) of a rollout to the statistics and returns them scaled. `ends` (N): 1 if
-  // an episode ended in this step; `env` (N): the environment of each step. The returns G continue
-  // from rollout to rollout.
+  // Adds the rewards of a rollout of N rows to the statistics and returns the scaled rewards (N).
+  // `ends` (N): 1 if an episode ended in this step; `env` (N): the environment of each step. If an
+  // episode continues in the next rollout, its return G continues too.
   std::vector<float> Scale(std::span<const float> reward, std::span<const float> ends,
                            std::span<const uint64_t> env);
 

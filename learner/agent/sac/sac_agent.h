@@ -19,17 +19,17 @@ inline constexpr Figure kTemperatureLoss{
 inline constexpr Figure kAuxError{"aux_error", "m", "root mean square error of what sac.aux tells",
                                   false, ""};
 
-// Figures in the order of an update. The temperature is the value after the update, the learning
-// rate the value in the update. The figures of the actor, and those after them, exist only if the
-// update trains the actor. The label error exists only if the update trains the encoder and sac.aux
-// is set.
+// Metrics of an update, in the order of its report. The temperature is the value after the update;
+// the learning rate is the value that the update used. The metrics of the actor, and the metrics
+// after them, exist only if the update trains the actor. kAuxError exists only if the update trains
+// the encoder and sac.aux is set.
 inline constexpr const Figure* kSacFigures[] = {
     &kCriticLoss,      &kQMean,    &kTargetMean,       &kCriticGradNorm, &kActorLoss,
     &kTemperatureLoss, &kEntropy,  &kActionSaturation, &kActorGradNorm,  &kTemperature,
     &kLearningRate,    &kAuxError, &kQ1Mean,           &kQ1Std,          &kQ2Mean,
     &kQ2Std,           &kQMinMean, &kQMinStd,          &kQMinMin,        &kQMinMax};
 
-// Makes the agent of Algorithm::make.
+// See Algorithm::make.
 std::unique_ptr<Agent> MakeSacAgent(const Config& config, const ObservationSpec& spec,
                                     Engine* engine);
 

@@ -1,23 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// The networks that SAC trains, with their targets and averages. Names are prefixes of tensors:
+// The networks that SAC trains, with their targets and averages. Names of tensors:
 //
-//   encoder.*, critic.*    trained by the critic's loss, one optimiser
-//   actor.*                trained by the actor's loss on the same features, detached
-//   target.*               trunk and Q functions that follow critic.*, on the critic's features
+//   encoder.*, critic.*    trained by the critic's loss, with one optimiser
+//   actor.*                trained by the actor's loss; reads the same features, detached
+//   target.*               trunk and Q functions that follow critic.*; reads the critic's features
 //   average.*              moving average of encoder.* and actor.*
-//   temperature.log        one number
+//   temperature.log        logarithm of the temperature
 //
-// network.encoders = separate: the actor's loss trains encoder.* for the actor; the critic has its
-// own critic.encoder.*. network.target_encoder: target.encoder.* follows the critic's encoder, and
-// the target reads the features of target.encoder.*.
+// If network.encoders is "separate", the actor's loss trains encoder.*, which only the actor reads,
+// and the critic has its own encoder critic.encoder.*. If network.target_encoder is set,
+// target.encoder.* follows the critic's encoder, and the target reads the features of
+// target.encoder.*.
 //
-// sac.critic_blocks: the critic is asymmetric. Its input has no pixels, and the actor's loss trains
-// encoder.*.
+// If sac.critic_blocks is set, the critic is asymmetric: its input has no pixels, and the actor's
+// loss trains encoder.*.
 //
-// sac.aux: aux.* is trained together with the encoder, by an additional loss.
+// If sac.aux is set, an additional loss trains aux.* together with the encoder.
 //
-// Dimensions: B batch (with several replicas, the rows of this replica), A actions, V vector size,
-// K*C channels. A result is valid until the function that returned it is called again.
+// Dimensions: B batch (with several replicas, the rows of this replica), K frames of a stack, (C,
+// H, W) of a frame, V vector size, A actions. A result is valid until the next call of the function
+// that returned the result.
 #pragma once
 
 #include <array>
@@ -39,7 +41,8 @@
 
 namespace shoal::learner {
 
-// Not movable. One thread; passes over parameters use the current nn::ThreadScope.
+// Not movable. Only one thread may use an object; passes over parameters use the current
+// nn::ThreadScope.
 class SacNetworks {
  public:
   // `config` gives seed, learning rates, clipping and initial temperature. Borrows the engine.
@@ -47,8 +50,8 @@ class SacNetworks {
   SacNetworks(const SacNetworks&) = delete;
   SacNetworks& operator=(const SacNetworks&) = delete;
 
-  // The encoding functions take frames (B, K*C, H, W). The heads below read the features, which
-  // stay valid until the next call. Without pixels these functions do nothing.
+  // The next three functions encode frames (B, K*C, H, W). The forward functions read the features,
+  // which stay valid until the next call. Without pixels, the three functions do nothing.
   //
   // Encodes next observations for actor and target, with running statistics.
   void EncodeNext(Frames frames);
@@ -61,21 +64,21 @@ class SacNetworks {
   // step.
   void EncodeForActor(Frames frames);
 
-  // The forward functions take action (B, A) and a vector: the actor's (B, V), or the vector of
-  // critic and target (critic_vectors.h).
+  // The vector of ForwardActor is the policy's vector (B, V). The vector of ForwardTarget and
+  // ForwardCritic is the critic's vector (critic_vectors.h). Actions are (B, A).
   struct Gaussian {
     Array mean, log_std;  // (B, A), before tanh
   };
   Gaussian ForwardActor(Array vector);
-  using TwinQ = std::array<Array, 2>;  // (B)
+  using TwinQ = std::array<Array, 2>;  // each (B)
   TwinQ ForwardTarget(Array vector, Array action);
   TwinQ ForwardCritic(Array vector, Array action);
 
-  // True if the head trains the encoder and there are labels (sac.aux). Then ForwardBackwardAux
+  // Whether the head trains the encoder and there are labels (sac.aux). If so, ForwardBackwardAux
   // must run between the forward and the backward pass of this head.
   enum class Head { kCritic, kActor };
   bool Aux(Head head) const { return aux_ && (head == Head::kActor) == ActorTrains(); }
-  // Adds the auxiliary loss. `drawn`: the batch before any normalisation. Returns
+  // Adds the auxiliary loss. `drawn`: the batch before normalisation. Returns
   // AuxLoss::mean_square, the mean square error of the labels. CHECKs that sac.aux is set.
   Number ForwardBackwardAux(const Transitions& drawn);
 
@@ -103,11 +106,11 @@ class SacNetworks {
   // average += rate * (policy - average), for encoder and actor (Eq. 12).
   void MovePolicyAverage(float rate) { average_.Move(rate); }
 
-  // encoder.* and actor.*, F32: the newest values, and their moving average
-  // (PolicyAverage::Tensors).
+  // Tensors encoder.* and actor.*, F32. The first function returns the newest values, the second
+  // one the moving average (PolicyAverage::Tensors).
   nn::TensorMap PolicyTensors() const;
   nn::TensorMap AveragedPolicyTensors() const { return average_.Tensors(); }
-  // Parameters, targets, averages and optimisers; `state` borrows them.
+  // Adds parameters, targets, averages and optimisers. `state` borrows them.
   void AddTo(AgentState* state);
 
  private:
@@ -124,8 +127,8 @@ class SacNetworks {
   const bool asymmetric_;  // the critic has no pixels as input
   // Encoder of the policy, and of the critic if critic_encoder_ is null. Null without pixels.
   const std::unique_ptr<nn::EncoderModule> encoder_;
-  const std::unique_ptr<nn::EncoderModule> critic_encoder_;  // null: encoder_
-  const std::unique_ptr<nn::EncoderModule> target_encoder_;  // null: the critic's
+  const std::unique_ptr<nn::EncoderModule> critic_encoder_;  // null: the critic uses encoder_
+  const std::unique_ptr<nn::EncoderModule> target_encoder_;  // null: uses the critic's encoder
   nn::CriticModule critic_, target_;
   nn::ActorModule actor_;
   const std::unique_ptr<AuxLoss> aux_;  // null without sac.aux
