@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of an actor whose environments are a user's, in Python or in C++.
+// The parts of an actor that plays a user's environments, in Python or in C++.
 #pragma once
 
 #include <functional>
@@ -14,11 +14,11 @@ namespace shoal::actor {
 
 // An environment and the description of its spaces.
 struct OpenedEnvironment {
-  tasks::EnvironmentDescription description;  // without the facts that only playing shows
+  tasks::EnvironmentDescription description;  // without the facts that are found only by playing
   std::unique_ptr<hosted::RawEnvironment> raw;
 };
 
-// The use that an environment is opened for.
+// The purpose for which an environment is opened.
 enum class Purpose {
   kPlay,
   kShow,      // plays and renders pictures

@@ -16,15 +16,15 @@ struct ActorParts {
   // Registers the tasks of a configuration. Call it before threads start. Throws Error.
   std::function<void(const RunConfig&)> add_tasks;
   EvaluationEnvironments environments;
-  // The answer of --describe about a configuration, as JSON. Throws Error.
+  // Makes the output of --describe for a configuration, as JSON. Throws Error.
   std::function<nlohmann::ordered_json(const Config&)> describe;
 };
 
 // Shoal's own worlds.
 ActorParts WorldParts();
 
-// Runs the use that the command line selects and returns the exit code. Throws Error (kUsage) if
-// the command line is invalid, and the errors of the selected use.
+// Runs what the command line selects and returns the exit code. Throws Error (kUsage) if the
+// command line is invalid, and the errors of the selected use.
 int RunActorProgram(int argc, char** argv, const ActorParts& parts);
 
 }  // namespace shoal::actor

@@ -15,8 +15,8 @@ namespace shoal::actor {
 using EnvironmentFactory =
     std::function<std::vector<std::unique_ptr<worlds::Environment>>(const RunConfig&, int)>;
 
-// Makes `count` environments that share one render context. Throws Error naming both specs if the
-// environments' observation spec differs from the one in the run's config.json.
+// Makes `count` environments that share one render context. If their observation spec differs from
+// the spec in the run's config.json, throws Error naming both specs.
 std::vector<std::unique_ptr<worlds::Environment>> MakeEnvironments(const RunConfig& run, int count);
 
 }  // namespace shoal::actor

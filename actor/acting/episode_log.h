@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Figures of one episode, and means over the most recent episodes, for metrics.
+// Statistics of one episode, and their means over the most recent episodes, for metrics.
 #pragma once
 
 #include <cstddef>
@@ -27,8 +27,9 @@ class EpisodeLog {
 
   void Add(const EpisodeFigures& figures);
   uint64_t count() const { return count_; }
-  // Mean figures; all zero before the first episode. `success` is not averaged: see SuccessRate.
-  // All episodes of a run randomize the masses of the same bodies.
+  // Mean of each statistic; all zero before the first episode. `success` is not averaged: see
+  // SuccessRate. The drawn masses can be averaged because all episodes of a run randomize the same
+  // bodies.
   EpisodeFigures Mean() const;
   double SuccessRate() const;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Exploration: computes the played action from a policy's output. Independent of the policy and of
-// the pace. Each episode has its own random stream for all its draws.
+// the pace. All draws of an episode use the episode's own random stream.
 //
 //   squashed_gaussian   a = tanh(mean + f exp(log_std) eps)           Eq. 4 of docs/algorithm.md
 //   gaussian            a = clip(tanh(mean) + f sigma eps, -1, 1)
@@ -13,7 +13,7 @@
 // eps ~ N(0, I); sigma follows a schedule over the run's env steps; f is the actor's own factor.
 // ou: Ornstein-Uhlenbeck noise as in Lillicrap et al. 2015, arXiv:1509.02971, section 7.
 //
-// Dimensions: E environments, A actions.
+// Dimensions: E environments, A components of an action.
 #pragma once
 
 #include <cstdint>
@@ -36,12 +36,12 @@ class Exploration {
   virtual void OnEnvSteps(uint64_t run_env_steps) = 0;
   // Resets the state that the noise of environment `e` carried over from its previous episode.
   virtual void BeginEpisode(int e) = 0;
-  // Writes the action (A) of environment `e`, each component in [-1, 1]. `policy`: rows (A) of the
-  // environment.
+  // Writes the action (A) of environment `e`, each component in [-1, 1]. `policy`: the policy's
+  // output (A) for this environment.
   virtual void Act(int e, const nn::PolicyOutput& policy, Random& stream,
                    std::span<float> action) = 0;
-  // Result of the last Act, for on-policy learning: the drawn action, written to `drawn` (A), and
-  // its log-probability. Kinds other than `policy` have none: they leave `drawn` and return 0.
+  // Result of the last Act, for on-policy learning: writes the drawn action to `drawn` (A) and
+  // returns its log-probability. Kinds other than `policy` write nothing and return 0.
   virtual float Drawn(std::span<float> /*drawn*/) const { return 0; }
 
   // The state that BeginEpisode resets, so that another process can continue; empty if there is
@@ -55,10 +55,10 @@ std::unique_ptr<Exploration> MakeExploration(const Config& config, int envs, int
                                              double factor);
 
 // Factor of an actor by exploration.spread: the factors of N actors form a geometric sequence from
-// 1 / spread to spread. Actors beyond the configured number repeat them in turn.
+// 1 / spread to spread. Actors beyond the configured number repeat these factors in turn.
 double NoiseFactor(const Config& config, uint32_t actor);
 
-// An actor's part of exploration.random_steps, which are shared evenly.
+// An actor's share of exploration.random_steps, which are divided evenly among the actors.
 uint64_t RandomStepsOfActor(const Config& config);
 
 }  // namespace shoal::actor

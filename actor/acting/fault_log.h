@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Log of faulty episodes, which end because a number of the simulation is not finite. Counts them
-// by cause, logs at most one line in ten seconds, and ends the run if there are too many.
+// Log of faulty episodes, which end because a number of the simulation is not finite. Counts faulty
+// episodes by cause, logs at most one line in ten seconds, and ends the run if there are too many.
 //
 //   too many: more than max_faulty_share * kWindow of the newest kWindow episodes were faulty
 //
-// During the first kWindow episodes the limit is the same number of faulty episodes. A task that
-// only has faulty episodes therefore ends the run early.
+// During the first kWindow episodes the limit is the same number of faulty episodes. If all
+// episodes of a task are faulty, the run therefore ends early.
 #pragma once
 
 #include <array>
@@ -32,8 +32,8 @@ class FaultLog {
 
   // Counts an episode that ended without a fault.
   void Ended() { Add(false); }
-  // Counts an episode that was faulty or could not begin. Throws Error (kNonFinite) with the
-  // fault's message if there are too many.
+  // Counts an episode that was faulty or could not begin. If there are too many faulty episodes,
+  // throws Error (kNonFinite) with the fault's message.
   void Count(const worlds::EpisodeFault& fault);
 
   // Faulty episodes of a cause since construction.

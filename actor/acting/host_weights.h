@@ -5,9 +5,9 @@
 //
 // The process that holds the lock RUN/made/weights-HOST.lock is the receiver. The receiver writes
 // the address of its board to RUN/made/weights-HOST.json. The kernel frees the lock when its holder
-// ends. The other processes try to take the lock once a second; the one that succeeds becomes the
-// receiver. If a process cannot read the board for kPatience (another PID namespace, another user,
-// a stopped holder), the process receives weights for itself alone until it ends.
+// ends. The other processes try to take the lock once a second; the process that takes the lock
+// becomes the receiver. If a process cannot read the board for kPatience (another PID namespace,
+// another user, a stopped holder), the process receives weights for itself alone until it ends.
 #pragma once
 
 #include <chrono>
@@ -46,7 +46,8 @@ class HostWeights final : public WeightsSource {
  private:
   void Look(SteadyTime now);
   bool TryReceiveForHost();
-  // Opens the holder's board. Returns why the board cannot be used; empty = it can be used.
+  // Opens the board of the lock's holder. Returns the reason if the board cannot be used; empty =
+  // the board can be used.
   std::string OpenBoard();
   void ReceiveAlone(const std::string& reason);
   void Post(const ReceivedWeights& weights);
@@ -57,7 +58,7 @@ class HostWeights final : public WeightsSource {
   WeightsVersion taken_;
 
   SteadyTime next_look_{};
-  std::optional<SteadyTime> useless_since_;  // since when the board cannot be read
+  std::optional<SteadyTime> useless_since_;  // time at which reading the board first failed
   std::unique_ptr<WeightsBoardReader> reader_;
 
   std::optional<FileLock> lock_;

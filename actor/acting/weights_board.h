@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shared memory (common/base/shared_memory.h) through which one process of a host passes received
 // weights to its neighbours. There is a board of fixed size, and separate memory for each version.
-// A version is written once, before the board names it. The board names the newest two versions, so
-// a reader that is late by one version still finds the version that it looked up. Mapped versions
-// stay valid.
+// A version is written once, before the board names this version. The board names the newest two
+// versions, so a reader that is late by one version still finds the version that it looked up.
+// Mapped versions stay valid.
 //
 //   board   0   8     magic "SHOALWB1"
 //           8   16    token, random
@@ -66,7 +66,8 @@ class WeightsBoardReader {
   std::optional<ReceivedWeights> TryTake();
   // True if no further version will be added.
   bool closed() const;
-  // True if the last version that was looked up could not be read, and no later one was read.
+  // True if the last version that was looked up could not be read, and no later version has been
+  // read.
   bool failed() const { return failed_; }
 
  private:

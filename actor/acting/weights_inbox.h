@@ -48,7 +48,7 @@ class WeightsInbox final : public WeightsSource {
   std::optional<ReceivedWeights> Take(SteadyTime deadline);
 
   uint64_t refused() const;
-  // Versions that a newer one replaced before they were taken.
+  // Number of versions that a newer version replaced before they were taken.
   uint64_t overtaken() const;
 
  private:

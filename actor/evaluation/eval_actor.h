@@ -20,8 +20,8 @@ namespace shoal::actor {
 // Members are in construction order, so readers are destroyed before the inboxes they write to.
 class EvalActor {
  public:
-  // Serves the run in `folder`. `make`: see Evaluator. The same thread constructs the actor and
-  // calls Run. Borrows the hub. Throws Error.
+  // Plays the evaluations of the run in `folder`. `make`: see Evaluator. The same thread constructs
+  // the actor and calls Run. Borrows the hub. Throws Error.
   EvalActor(const std::filesystem::path& folder, link::Hub& hub,
             const EnvironmentFactory& make = MakeEnvironments);
 
@@ -33,8 +33,8 @@ class EvalActor {
   // Plays a whole evaluation with one weights version; newer versions wait in the inbox.
   void Evaluate(const ReceivedWeights& weights);
 
-  // Sends a message. Throws Error at the deadline. The learner keeps sending the parameters, so the
-  // next process of this role plays the evaluation again.
+  // Sends a message. Throws Error if the message is not sent before the deadline. The learner keeps
+  // sending the parameters, so the next process of this role plays the evaluation again.
   void Send(const EvalMessage& message);
 
   void WarnOfOvertaken();

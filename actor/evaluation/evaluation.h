@@ -31,14 +31,14 @@ struct EpisodeResult {
   // tasks without causes of failure (failure_cause.h).
   std::vector<double> desired{}, achieved{};
   std::optional<FailureCause> failure{};
-  // The fault of a faulty episode, which counts as failed: it ended, or could not begin, because a
-  // number of the simulation was not finite.
+  // The fault of a faulty episode: the episode ended, or could not begin, because a number of the
+  // simulation was not finite. A faulty episode counts as failed.
   std::optional<worlds::FaultCause> fault{};
 };
 
-// Selects the episodes that are played: episode k starts from StreamKey(seed, role, group, k).
-// Train, evaluation and final streams share no episodes. `group` gives each evaluation new
-// episodes.
+// Selects the episodes that are played: episode k starts from StreamKey(seed, role, group, k). The
+// roles (training, evaluation, final evaluation) share no episodes. Each evaluation has its own
+// `group`, and therefore new episodes.
 struct EpisodeStream {
   int64_t seed = 0;
   StreamRole role = StreamRole::kEvalEnvironment;
@@ -48,8 +48,8 @@ struct EpisodeStream {
   }
 };
 
-// Stream of the episodes that evaluate a checkpoint of a run. The evaluation of a draining run may
-// have the same env steps as the evaluation before; its number of updates selects other episodes.
+// Stream of the episodes that evaluate a checkpoint of a run. At the end of a run, two evaluations
+// may have the same env steps; their numbers of updates then select different episodes.
 // A checkpoint that is evaluated again after a restart gets the same episodes.
 EpisodeStream EvaluationStream(int64_t seed, uint64_t env_steps, uint64_t updates);
 
@@ -61,11 +61,11 @@ struct EvaluationLabel {
   uint64_t env_steps = 0;
 };
 
-// Environments stepped together and the policy that acts in them. One thread.
+// Environments that are stepped together, and the policy that acts in the environments. One thread.
 class Evaluator {
  public:
-  // Throws Error if the environment's spec is not the run's. `noop`: every action is zero. `make`
-  // makes the task's environments; tests use cheaper ones.
+  // Throws Error if the environment's spec differs from the run's spec. `noop`: every action is
+  // zero. `make` makes the task's environments; tests use cheaper environments.
   explicit Evaluator(const RunConfig& run, bool noop = false,
                      const EnvironmentFactory& make = MakeEnvironments);
 
@@ -76,9 +76,9 @@ class Evaluator {
 
   // Plays `episodes` whole episodes with the mean action of the policy (or uniform random actions
   // if no weights are loaded). `stop` is called after each step. If `stop` returns true before all
-  // episodes have ended, returns the leading ended episodes, so short episodes are not preferred.
-  // After each episode `on_ended` receives the number of ended episodes. Faulty episodes are logged
-  // and are no error, however many there are.
+  // episodes have ended, returns the ended episodes before the first episode that has not ended, so
+  // short episodes are not preferred. After each episode `on_ended` receives the number of ended
+  // episodes. Faulty episodes are logged; any number of faulty episodes is accepted.
   std::vector<EpisodeResult> Play(int episodes, const EpisodeStream& stream,
                                   const std::function<bool()>& stop,
                                   const std::function<void(int ended)>& on_ended = {});
@@ -98,7 +98,7 @@ class Evaluator {
     int begun = 0, done = 0;
   };
 
-  // Gives environment `e` the next episode that can begin, if any is left.
+  // Begins in environment `e` the next episode that can begin, if any is left.
   void Begin(int e, const EpisodeStream& stream, Played* played);
   void Step(int e, Played* played);
   void End(const Player& player, std::optional<worlds::FaultCause> fault, Played* played);
@@ -125,13 +125,14 @@ nlohmann::ordered_json EvaluationJson(const RunConfig& run, const EvaluationLabe
 struct CheckpointEvaluation {
   int episodes = 100;
   int64_t seed = 1;
-  // Task to play in place of the run's (see WithTask); the result then names the run's task as
+  // Task to play in place of the run's task (see WithTask). The result then names the run's task as
   // trained_task. Empty = the run's task.
   std::string task = "";
   // Destination of recorded frames, if any. Episodes are then played one after the other.
   std::optional<FrameRecorder::Options> frames = {};
-  // If true, a stopped evaluation returns the result of the episodes played so far, if any, with
-  // `episodes_asked`.
+  // If true, a stopped evaluation returns the result of the episodes played so far. The result then
+  // also has `episodes_asked`. If no episode has been played, Error is thrown as if `partial` were
+  // false.
   bool partial = false;
   // Called after each episode with the number of ended episodes.
   std::function<void(int ended)> on_ended = {};

@@ -15,7 +15,8 @@ namespace shoal::actor {
 
 struct EvaluationEnvironments {
   EnvironmentFactory make;
-  // The run with another task to play. Throws Error if the policy does not fit that task.
+  // Returns the run's configuration with another task to play. Throws Error if the policy does not
+  // fit the other task.
   std::function<RunConfig(const RunConfig&, const std::string& task)> with_task;
   // Makes the larger view of films. Called after the evaluation's only environment has been made.
   std::function<std::unique_ptr<EpisodeView>(const RunConfig&, const FrameRecorder::Options&)> view;

@@ -19,7 +19,7 @@
 //     reached_then_left   some d_t < D
 //     moved_away          d_T >= d_0
 //     beside_the_goal     the distance of p_T from the line p_0 g exceeds |g - p_0| - along
-//     stopped_short       else
+//     stopped_short       in all other cases
 //   without an object
 //     reached_then_left, moved_away, stopped_short
 #pragma once
@@ -62,10 +62,11 @@ class FailureFacts {
   // The causes that an episode of the task can have, in the order in which they are tested.
   std::span<const FailureCause> causes() const;
 
-  // `vector` (R): every block, as Environment writes it.
+  // `vector` (R): all blocks, as Environment writes them.
   void Begin(std::span<const float> vector);
   void Step(std::span<const float> vector);
-  // The desired and the achieved goal, in m: as many numbers as the goal has.
+  // The desired goal, and the achieved goal at the last observation, in m. The size is that of the
+  // goal.
   std::vector<double> desired() const { return Numbers(goal_); }
   std::vector<double> achieved() const { return Numbers(now_); }
   // The cause of an episode that has ended without success and without a fault. CHECK: `applies()`,
@@ -77,7 +78,7 @@ class FailureFacts {
 
   Point Read(std::span<const float> vector, const ObservationSpec::Range& block) const;
   std::vector<double> Numbers(const Point& point) const;
-  bool Lifts() const;  // the goal lies above the table
+  bool Lifts() const;  // the goal is above the table
   FailureCause CauseOfObject() const;
 
   bool applies_ = false, has_object_ = false;
@@ -86,7 +87,7 @@ class FailureFacts {
   double threshold_ = 0;  // D
   Point start_{}, now_{}, goal_{};
   double nearest_ = 0, first_distance_ = 0;               // d_t
-  double farthest_moved_ = 0, highest_ = 0, lowest_ = 0;  // of p_t, from p_0
+  double farthest_moved_ = 0, highest_ = 0, lowest_ = 0;  // p_t relative to p_0
   double most_tilted_ = 0;                                // rad
 };
 

@@ -21,12 +21,12 @@ class FrameRecorder final : public EpisodeListener {
  public:
   struct Options {
     std::filesystem::path file;
-    // Camera of the view. Empty = the task's camera for films; if it has none, the run's first
-    // camera; if the run has none, the task's first.
+    // Camera of the view. Empty = the task's camera for films; if the task has no such camera, the
+    // run's first camera; if the run has no camera, the task's first camera.
     std::string camera = "";
     int height = 480, width = 480;  // of the view
-    // fast | native | reference. Empty = native for runs in quality native, so that these need no
-    // OSMesa; reference for other runs.
+    // fast | native | reference. Empty = native for runs in quality native, so that these runs need
+    // no OSMesa; reference for other runs.
     std::string quality = "";
   };
   // `spec`: observation spec of the policy. Throws Error if the file cannot be written.
@@ -35,12 +35,13 @@ class FrameRecorder final : public EpisodeListener {
 
   void OnBegin(uint64_t stream_key, std::span<const uint8_t> stack) override;
   void OnStep(const SeenStep& step) override;
-  // Repeats the last picture as the end of the episode, so films show all played episodes.
+  // Writes the last picture once more and marks it as the episode's end. An episode that is faulty
+  // from the start is therefore also in the film.
   void OnFault(std::span<const uint8_t> stack) override;
 
  private:
   const std::unique_ptr<EpisodeView> view_;
-  std::vector<uint8_t> picture_;  // (H, W, 3): the view's
+  std::vector<uint8_t> picture_;  // (H, W, 3), of the view
   image::FrameStreamWriter writer_;
   std::vector<float> no_action_;
   uint32_t episode_ = 0, step_ = 0;

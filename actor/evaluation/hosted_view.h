@@ -21,7 +21,7 @@ class HostedView final : public EpisodeView {
   int height() const override { return height_; }
   int width() const override { return width_; }
   uint32_t step_microseconds() const override { return 0; }
-  // Begin and Step throw Error if a picture has another size than the first one.
+  // Begin and Step throw Error if a picture has another size than the first picture.
   void Begin(uint64_t stream_key, std::span<uint8_t> picture) override;
   void Step(std::span<const float> action, float reward, std::span<uint8_t> picture) override;
 

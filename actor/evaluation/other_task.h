@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Evaluation of a policy on another task than the one it was trained on, for example sim-to-sim
+// Evaluation of a policy on another task than the training task, for example for sim-to-sim
 // transfer.
 #pragma once
 
@@ -9,9 +9,10 @@
 
 namespace shoal::actor {
 
-// The run's configuration with another task in place of its own. The run's randomization and model
-// file are not applied to the new task. The spec is the new task's. Throws Error naming both sizes
-// if the new task's observations or actions do not have the sizes of the run's policy.
+// Returns the run's configuration with `task` in place of the run's task. The run's randomization
+// and model file are not applied to the new task. The returned spec is that of the new task. If the
+// sizes of the new task's observations or actions do not fit the run's policy, throws Error naming
+// both sizes.
 RunConfig WithTask(const RunConfig& run, const std::string& task);
 
 }  // namespace shoal::actor

@@ -13,8 +13,8 @@
 
 namespace shoal::actor {
 
-// Makes the view. Its Step CHECKs that both environments earn the same reward. Throws Error
-// (kUsage) if the task does not have the camera.
+// Makes the view. Step of the view CHECKs that both environments return the same reward. Throws
+// Error (kUsage) if the task does not have the camera.
 std::unique_ptr<EpisodeView> MakeWorldView(const RunConfig& run,
                                            const FrameRecorder::Options& options);
 

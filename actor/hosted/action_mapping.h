@@ -11,7 +11,7 @@
 namespace shoal::hosted {
 
 // `policy_action` and `mapped` have one number for each element of `space`. Throws Error:
-// kNonFinite on a number that is not finite, kRuntime on one outside of [-1, 1].
+// kNonFinite if a number is not finite, kRuntime if a number is outside of [-1, 1].
 void MapAction(const tasks::ArraySpace& space, std::span<const float> policy_action,
                std::span<double> mapped);
 

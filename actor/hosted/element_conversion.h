@@ -9,7 +9,7 @@
 
 namespace shoal::hosted {
 
-// Converts `array` to `numbers`. `array` has numbers.size() elements of `type`.
+// Converts `array`, which has numbers.size() elements of `type`, to `numbers`.
 void ConvertTo(tasks::ElementType type, const void* array, std::span<float> numbers);
 std::vector<float> ToFloats(tasks::ElementType type, const void* array, size_t count);
 

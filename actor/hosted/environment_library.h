@@ -3,8 +3,8 @@
 //
 //   extern "C" void ShoalRegisterEnvironments();   calls AddEnvironment for each environment
 //
-// A library uses the Shoal functions of the program that loads it, so it must be built with the
-// same compiler and with headers of the same version. Only actors load libraries.
+// A library uses the Shoal functions of the loading program. The library must therefore be built
+// with the same compiler and with headers of the same version. Only actors load libraries.
 #pragma once
 
 #include <memory>
@@ -19,13 +19,14 @@ namespace shoal::hosted {
 class OwnEnvironment : public RawEnvironment {
  public:
   // Describes the environment's spaces. The caller fills in `id` and `task`. `goal` states the
-  // reward; `shoal env check` and each start of a run compare it with the rewards of an episode.
+  // reward; `shoal env check` and each start of a run compare `goal` with the rewards of an
+  // episode.
   virtual tasks::EnvironmentDescription Describe() const = 0;
-  // By default throws Error: the environment has no pictures.
+  // The default implementation throws Error: the environment has no pictures.
   RawPicture Render() override;
 };
 
-// `kwargs`: env.kwargs, the JSON text of an object; "{}" if the user gives none.
+// `kwargs`: the value of env.kwargs, the JSON text of an object; "{}" if the key is not set.
 using EnvironmentMaker = std::unique_ptr<OwnEnvironment> (*)(const std::string& kwargs);
 
 // Registers an environment for `shoal train --env LIBRARY.so:NAME`. Call it at the start of a

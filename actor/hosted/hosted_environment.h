@@ -21,19 +21,19 @@ namespace shoal::hosted {
 
 class HostedEnvironment final : public worlds::Environment {
  public:
-  // `raw` has the spaces of `description`. Throws Error (kUsage), as SpecOf (hosted_spec.h) does.
+  // `raw` has the spaces of `description`. Throws the errors (kUsage) of SpecOf (hosted_spec.h).
   HostedEnvironment(tasks::EnvironmentDescription description, const Config& config,
                     std::unique_ptr<RawEnvironment> raw);
 
   const ObservationSpec& spec() const override { return spec_; }
   // Reset and Step throw EpisodeFault if a number of an observation or a reward is not finite.
-  // Numbers outside their declared bounds are accepted; the first of each array is logged as a
-  // warning.
+  // Numbers outside their declared bounds are accepted; the first such number of each array is
+  // logged as a warning.
   float Reset(uint64_t stream_key, worlds::ObservationOut out) override;
   worlds::StepResult Step(std::span<const float> action, worlds::ObservationOut out) override;
   // 0: the user's code renders its images within its step.
   double render_seconds() const override { return 0; }
-  // Seconds in reset and step of the user's code.
+  // Seconds spent in reset and step of the user's code.
   std::optional<double> user_seconds() const override {
     return call_seconds_ - raw_->binding_seconds();
   }

@@ -21,8 +21,9 @@ namespace shoal::hosted {
 
 class ImageResize {
  public:
-  // `grey`: RGB becomes one channel, the luma of ITU-R BT.601, like in frames of Shoal's worlds.
-  // Throws Error (kUsage) if the image has more than 16 million pixels: the sums would overflow.
+  // `grey`: RGB becomes one channel, the luma of ITU-R BT.601, as in frames of Shoal's worlds.
+  // Throws Error (kUsage) if the image has more than 16 million pixels, because the sums would
+  // overflow.
   ImageResize(const tasks::ImageLayout& layout, bool grey, int height, int width);
 
   int channels() const { return channels_; }
@@ -30,8 +31,9 @@ class ImageResize {
   void Apply(const uint8_t* image, std::span<uint8_t> frame);
 
  private:
-  // Source pixels first .. first + weights.size() - 1 with their weights in one output pixel. The
-  // weights of one output pixel add up to the side of the source image.
+  // Source pixels first .. first + weights.size() - 1 of one row or column, with their weights in
+  // one output pixel. The weights of one output pixel add up to the side of the source image in
+  // pixels.
   struct Span {
     int first = 0;
     std::vector<uint32_t> weights;

@@ -21,12 +21,12 @@ class ObservationMapping {
   ObservationMapping(const tasks::EnvironmentDescription& description, const ObservationSpec& spec);
 
   // Writes every block to `vector` (R). `arrays`: the arrays of an observation in the description's
-  // order, each contiguous in C order. Arrays that neither a camera nor a block names are not read.
+  // order, each contiguous in C order. Arrays that are neither a camera nor a block are not read.
   // `steps`: steps since the episode's start, for messages.
   //
   // Throws EpisodeFault if a number is not finite; a part of `vector` may then have been written.
-  // Numbers outside their declared bounds are accepted; the first of each array is logged as a
-  // warning.
+  // Numbers outside their declared bounds are accepted; the first such number of each array is
+  // logged as a warning.
   void ReadVector(std::span<const void* const> arrays, int64_t steps, std::span<float> vector);
   // Writes the images of all cameras to `frame` (C, H, W).
   void ReadFrame(std::span<const void* const> arrays, std::span<uint8_t> frame);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A user's environment behind a plain interface: arrays with the shapes and types of its
-// description (common/tasks/environment_description.h), and actions in its own units.
+// description (common/tasks/environment_description.h), and actions in the environment's units.
 // HostedEnvironment adapts a RawEnvironment to Environment. The Python package implements
-// RawEnvironment for Gymnasium's interface; tests and user programs may implement it for others.
+// RawEnvironment for Gymnasium's interface; tests and user programs may implement RawEnvironment
+// for other interfaces.
 #pragma once
 
 #include <cstdint>
@@ -29,17 +30,17 @@ struct RawPicture {
 class RawEnvironment {
  public:
   virtual ~RawEnvironment() = default;
-  // Starts an episode. Equal seeds start equal episodes if the environment supports it.
+  // Starts an episode. Equal seeds start equal episodes if the environment supports seeds.
   virtual void Reset(uint32_t seed) = 0;
   // `action`: one number for each element of the description's action, within its bounds.
   virtual RawStep Step(std::span<const double> action) = 0;
   // The arrays of the newest observation in the description's order, each contiguous in C order.
   // Valid until the next Reset or Step.
   virtual std::span<const void* const> observation() const = 0;
-  // Seconds within Reset and Step spent converting arguments and results. The remaining time is
-  // the user's code.
+  // Seconds that Reset and Step have spent converting arguments and results. The remaining time was
+  // spent in the user's code.
   virtual double binding_seconds() const { return 0; }
-  // Draws the present scene. Throws Error if it cannot be drawn.
+  // Draws the present scene. Throws Error if the scene cannot be drawn.
   virtual RawPicture Render() = 0;
 };
 

@@ -18,7 +18,7 @@ struct Trial {
   bool success = false;             // the environment reports success
   int repeated_steps = 0;           // steps repeated with the same seed and actions
   std::optional<int> differs_at{};  // first repeated step that differs; 0 = the reset
-  std::string other_reward{};  // why the rewards contradict the description's goal; empty = none
+  std::string other_reward{};  // first reward that contradicts the description's goal; empty = none
 };
 
 // Plays random actions until an episode ends or two seconds have passed, then repeats the beginning

@@ -24,8 +24,8 @@ namespace shoal::actor {
 // Borrows its parts. One thread.
 class ActorLoop {
  public:
-  // Time allowed for storing the last records. If the coordinator and the learner are gone, the
-  // limiter may withhold credits until the replay has also detected the loss.
+  // Time allowed for storing the last records. If the coordinator and the learner have died, the
+  // limiter may withhold credits until the replay has also detected the coordinator's loss.
   static constexpr std::chrono::seconds kDrainDeadline =
       ControlState::kLease + std::chrono::seconds(10);
   // Longest wait for a credit while the loop has nothing else to do.
@@ -44,8 +44,8 @@ class ActorLoop {
 
   enum class End {
     kAllStored,        // the run ended or a signal came; every record made is stored
-    kUnstored,         // the same, but some records were not acknowledged
-    kCoordinatorLost,  // the records may or may not be stored
+    kUnstored,         // the run ended or a signal came; some records were not acknowledged
+    kCoordinatorLost,  // the coordinator is lost; the records may or may not be stored
   };
   // Receives the loop's state ("running", "blocked", "draining", "stopping") several times a
   // second. `last` marks the final call.
@@ -55,8 +55,9 @@ class ActorLoop {
   // that the pace awaits do not arrive in time, and the errors of the parts.
   End Run(const Progress& progress);
 
-  // Time spent without room for records; time spent awaiting and loading weights.
+  // Time in which no further record could be begun.
   double blocked_seconds() const { return blocked_seconds_; }
+  // Time spent waiting for weights and loading them.
   double weights_seconds() const { return weights_seconds_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A training actor's 1 Hz report (docs/monitoring.md): its work and its waiting times.
+// A training actor's report, once a second (docs/monitoring.md): its work and its waiting times.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Implementations of the training actor's interfaces over the link and the process's signals. Each
-// consists of an inbox, the reader that fills the inbox, and a writer if the interface sends.
+// class consists of an inbox, the reader that fills the inbox, and a writer if the interface sends.
 // Destruction ends the receive threads' callbacks before it destroys the inboxes.
 #pragma once
 

@@ -22,12 +22,14 @@ class Pace {
   };
 
   virtual ~Pace() = default;
-  // The actor's next turn. `vector_steps`: made since the run's start; `version`: of the actor's
-  // present weights. Call Next before every vector step.
+  // The actor's next turn. `vector_steps`: number of vector steps made since the run's start;
+  // `version`: version of the actor's present weights. Call Next before every vector step.
   virtual Turn Next(int64_t vector_steps, const WeightsVersion& version) = 0;
-  // True if the loop also takes weights between steps, as they arrive; false if only when awaited.
+  // True if the loop takes weights between any two steps, as soon as they arrive. False if the loop
+  // takes weights only after kAwaitWeights.
   virtual bool TakesWeightsAnytime() const = 0;
-  // Names the weights that the last kAwaitWeights waits for, for the error if they do not arrive.
+  // Name of the weights for which the last kAwaitWeights waits. Used in the error if these weights
+  // do not arrive.
   virtual std::string Awaited() const = 0;
 
   // Time that the loop waits for weights before it fails.
@@ -46,13 +48,13 @@ class FreePace final : public Pace {
 };
 
 // Alternates with the learner (common/config/lockstep.h). At the end of each phase the actor waits
-// for the weights of the last update of the phase; clocks have no influence. The actor rests once a
-// phase has reached the budget.
+// for the weights of the last update of the phase; clocks have no influence. The actor rests after
+// the phase that reaches the budget.
 class LockstepPace final : public Pace {
  public:
-  // `vector_steps`: number in the restored state; 0 for a new actor. In the middle of a phase the
-  // state was made with the weights of the phase before. A resumed learner sends these weights
-  // first.
+  // `vector_steps`: number of vector steps in the restored state; 0 for a new actor. If the state
+  // is from the middle of a phase, the phase is played with the weights of the phase before. A
+  // resumed learner sends these weights first.
   LockstepPace(const Config& config, int64_t vector_steps);
 
   Turn Next(int64_t vector_steps, const WeightsVersion& version) override;
@@ -68,8 +70,8 @@ class LockstepPace final : public Pace {
 
 // The pace of on-policy learning, where each rollout gives one update. Plays each rollout of
 // `vector_steps` with one version of the weights. Before the next rollout the actor waits for the
-// next version; with `ahead` = 1, for the version before the next one. The version also shows the
-// progress of a learner that was restarted, or that continued without this actor.
+// next version; if `ahead` = 1, the version before the next version is enough. Versions also show
+// the progress of a learner that was restarted, or that continued without this actor.
 class VersionPace final : public Pace {
  public:
   explicit VersionPace(int64_t vector_steps, int ahead = 0);
@@ -85,11 +87,12 @@ class VersionPace final : public Pace {
   const int64_t length_;
   const uint64_t ahead_;
   int64_t end_ = 0;           // of the running rollout, in vector steps
-  uint64_t session_ = 0;      // of the learner whose weights play the running rollout
+  uint64_t session_ = 0;      // of the learner that sent the weights of the running rollout
   uint64_t next_update_ = 0;  // of the weights that will play the next rollout
 };
 
-// The pace that the configuration selects. `vector_steps`: number that the actor has already made.
+// Makes the pace that the configuration selects. `vector_steps`: number of vector steps that the
+// actor has already made.
 std::unique_ptr<Pace> MakePace(const Config& config, int64_t vector_steps);
 
 }  // namespace shoal::actor

@@ -2,17 +2,17 @@
 // Rollout of E environments that are stepped together. Each reset and each step gives one record.
 //
 // Resets take longer than steps, and all environments wait for each reset. If all environments
-// begin an episode in the same step, as at the start, these episodes are cut short, so that they
-// and later episodes end at different steps:
+// begin an episode in the same step, as at the start, these episodes are cut short. The
+// environments then reset at different steps:
 //
 //   environment e of E truncates its episode after ceil(L (e + 1) / E) env steps; a whole episode
 //   has L env steps.
 //
-// A faulty episode (actor/worlds/episode_fault.h) ends at its last finite observation. The failed
-// step is not recorded. Its environment begins another episode and makes a step there, so every
-// vector step still has one step record of each environment, and budgets, lockstep and on-policy
-// rollouts count the same steps as without faults. The replay closes the faulty episode when the
-// next episode begins.
+// A faulty episode (actor/worlds/episode_fault.h) ends at its last finite observation. The faulty
+// step is not recorded. The environment begins another episode and makes a step in this episode.
+// Every vector step therefore still has one step record of each environment, and budgets, lockstep
+// and on-policy rollouts count the same steps as without faults. The replay closes the faulty
+// episode when the next episode begins.
 //
 // Borrows the constructor's arguments, except the environments. One thread.
 #pragma once
@@ -51,28 +51,28 @@ class Rollout {
   struct Options {
     int64_t seed = 0;        // the run's
     uint32_t first_env = 0;  // number of the first environment within the run
-    // This actor's share of exploration.random_steps, and the total. The warm-up ends when the
-    // actor's env steps reach the share or the run's env steps reach the total. An actor that was
-    // restarted or joined late therefore does not repeat the warm-up.
+    // This actor's share of exploration.random_steps (own), and the total (run). The warm-up ends
+    // when the actor's env steps reach the share or the run's env steps reach the total. An actor
+    // that was restarted or joined late therefore does not repeat the warm-up.
     uint64_t own_random_steps = 0, run_random_steps = 0;
     int episode_steps = 0;        // L
-    double max_faulty_share = 0;  // FaultLog
+    double max_faulty_share = 0;  // limit of FaultLog
 
     static Options Of(const Config& config, uint32_t first_env);
   };
-  // The environments have the spec `spec`; their number is that of the selector's environments.
+  // `environments` have the observation spec `spec`; their number is that of the selector.
   Rollout(const Options& options, const ObservationSpec& spec,
           std::vector<std::unique_ptr<worlds::Environment>> environments, SequenceLog& made,
           RecordSink& sink, ActionSelector& selector);
 
-  // Steps every environment once; begins an episode if the last one has ended. Returns false, and
-  // does nothing, while the sink has no room for the records. Also returns false after a faulty
-  // step: the next call then steps the environments that have not yet made their step. Throws Error
-  // (kNonFinite) if the share of faulty episodes exceeds max_faulty_share.
+  // Steps every environment once. If an environment's episode has ended, begins its next episode
+  // first. Returns false, and does nothing, while the sink cannot take the records. Also returns
+  // false after a faulty step: the next call then steps the environments that have not yet made
+  // their step. Throws Error (kNonFinite) if the share of faulty episodes exceeds max_faulty_share.
   bool TryStep();
 
-  // Ends the running episodes; the next step begins new ones. Needed when the receiver is a new
-  // process, which does not have the episodes' first records.
+  // Ends the running episodes; the next step begins new episodes. Needed when the receiver is a new
+  // process, which does not have the first records of the running episodes.
   void AbandonEpisodes();
 
   // The present state. The caller fills in `session` and `made`.
@@ -82,12 +82,12 @@ class Rollout {
   // environments.
   void Restore(const RolloutState& state);
 
-  // Steps of this actor: since the run's start if the state was restored, otherwise since the
+  // Steps of this actor, counted from the run's start if the state was restored, otherwise from the
   // actor's start.
   uint64_t env_steps() const { return env_steps_; }
   int64_t vector_steps() const { return static_cast<int64_t>(env_steps_ / slots_.size()); }
-  // All ended episodes except the episodes with a cut (CutAfter). Among episodes with a cut, only
-  // short ones end before the cut, so including them would bias the figures.
+  // Statistics of the ended episodes. Episodes with a cut (CutAfter) are left out: only short
+  // episodes end before the cut, so these episodes would bias the statistics.
   const EpisodeLog& episodes() const { return episodes_; }
   const FaultLog& faults() const { return faults_; }
   StageSeconds seconds() const;
@@ -103,12 +103,12 @@ class Rollout {
   // Begins an episode in each environment that owes a step and has no running episode.
   void BeginEpisodes();
   void BeginEpisode(int e, int cut_after);
-  // Resets the environment; skips episodes that cannot begin. Writes the reset to `record`.
+  // Resets the environment and skips episodes that cannot begin. Writes the reset to `record`.
   void ResetRunner(int e, int cut_after, uint8_t* record);
-  // Env steps after which an episode is cut that begins in the same step as all others; 0 = no
-  // cut.
+  // Number of env steps after which an episode is cut if all environments begin an episode in the
+  // same step; 0 = no cut.
   int CutAfter(int e) const;
-  // False: the step was faulty and is not recorded.
+  // Returns false if the step was faulty and is not recorded.
   bool StepOne(int e);
   void OnFault(int e, const worlds::EpisodeFault& fault);
   void PlayAgain(int e, const EpisodeState& state);

@@ -21,18 +21,18 @@ struct EpisodeState {
   uint32_t episode = 0;
   bool running = false;
   int cut_after = 0;              // env steps; 0 = the episode is not cut short
-  bool owes = false;              // has not yet made its step of the current vector step
-  ActionSelector::Noise noise{};  // present state
+  bool owes = false;              // the environment has not yet made its step of the vector step
+  ActionSelector::Noise noise{};  // present state of the exploration
   std::vector<float> actions;     // (length, A) of the running episode
 
   bool operator==(const EpisodeState&) const = default;
 };
 
 struct RolloutState {
-  uint64_t session = 0;                // is kept: the replay joins records of one session only
-  uint64_t made = 0;                   // records, all of them stored
-  uint64_t env_steps = 0;              // of the actor since the run's start
-  std::vector<EpisodeState> episodes;  // per environment
+  uint64_t session = 0;    // of the actor; kept, as the replay joins records of one session
+  uint64_t made = 0;       // number of records made; all of them are stored
+  uint64_t env_steps = 0;  // of the actor since the run's start
+  std::vector<EpisodeState> episodes;  // one per environment
 
   bool operator==(const RolloutState&) const = default;
 };
@@ -40,8 +40,8 @@ struct RolloutState {
 // Writes the file. Throws Error if the file cannot be written.
 void WriteRolloutState(const std::filesystem::path& run, uint32_t actor, const RolloutState& state);
 
-// Reads the state of a previous process; empty if there is no file. Throws Error (usage) naming a
-// damaged file.
+// Reads the state of a previous process; empty if there is no file. If the file is damaged, throws
+// Error (usage) naming the file.
 std::optional<RolloutState> ReadRolloutState(const std::filesystem::path& run, uint32_t actor);
 // Reads the state and removes the file.
 std::optional<RolloutState> TakeRolloutState(const std::filesystem::path& run, uint32_t actor);

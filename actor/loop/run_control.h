@@ -12,12 +12,13 @@ class RunControl {
   virtual ~RunControl() = default;
   // The run's state, as in the coordinator's last message.
   virtual RunState state() = 0;
-  // True once the coordinator has been silent for longer than its lease. Call it several times a
-  // second.
+  // True if the coordinator has been silent for longer than its lease. Call CoordinatorLost several
+  // times a second.
   virtual bool CoordinatorLost(SteadyTime now) = 0;
-  // True once a signal asked this process to stop; the number of such signals. A signal during the
-  // drain ends it.
+  // True once a signal has asked this process to stop.
   virtual bool StopRequested() = 0;
+  // How many such signals have come. Another signal while the actor waits for its last records to
+  // be stored ends this wait.
   virtual int StopRequests() = 0;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A training actor: steps environments, publishes their records within its credit, and takes the
-// newest weights between steps. Owns the parts of the loop (actor_loop.h).
+// A training actor: steps environments, sends their records within its credit, and takes the newest
+// weights between steps. Owns the parts of the loop (actor_loop.h).
 #pragma once
 
 #include <cstdint>
@@ -32,8 +32,8 @@ namespace shoal::actor {
 class TrainingActor {
  public:
   // Actor `id` of the run in `folder`. Waits until an earlier process of the same id has ended.
-  // `make` makes the task's environments; tests of the transport use cheaper ones. The same thread
-  // constructs the actor and calls Run. Borrows the hub. Throws Error.
+  // `make` makes the task's environments; tests of the transport use cheaper environments. The same
+  // thread constructs the actor and calls Run. Borrows the hub. Throws Error.
   TrainingActor(const std::filesystem::path& folder, uint32_t id, link::Hub& hub,
                 const EnvironmentFactory& make = MakeEnvironments);
 

@@ -16,8 +16,9 @@ namespace shoal::actor {
 // Holds RUN/made/actor-ID.lock until destruction or the process's death.
 class ActorLock {
  public:
-  // Takes the lock. If a predecessor is still sending its last records, waits up to `deadline`, or
-  // until `stop` returns true. Throws Error naming the lock if the lock stays taken.
+  // Takes the lock. If an earlier process of this actor is still sending its last records, waits up
+  // to `deadline`, or until `stop` returns true. If the lock stays taken, throws Error naming the
+  // lock.
   ActorLock(const std::filesystem::path& run, uint32_t actor, std::chrono::seconds deadline,
             const std::function<bool()>& stop);
 

@@ -15,8 +15,8 @@
 
 namespace shoal::actor {
 
-// Another process with this actor's number started later. The session of that process supersedes
-// this one.
+// Another process with this actor's number has started later. The session of the other process
+// replaces this session.
 class SupersededError : public Error {
  public:
   SupersededError(uint32_t actor, uint64_t session);
@@ -29,9 +29,9 @@ class SupersededError : public Error {
 // Borrows window and link. One thread.
 class ChunkSender {
  public:
-  // If no sent chunk is acknowledged, or no credit arrives, for longer than this, everything is
-  // resent. The replay repeats every credit once a second. Silence therefore means that the replay
-  // does not know this session: it does not know the records that an earlier replay process stored.
+  // If no sent chunk is acknowledged, or no credit arrives, for longer than this time, all retained
+  // records are resent. The replay repeats every credit once a second. Silence therefore means that
+  // the replay does not know this session: the replay is a new process without the earlier records.
   static constexpr std::chrono::seconds kResendAfter{2};
 
   struct Options {
@@ -42,8 +42,9 @@ class ChunkSender {
   };
   ChunkSender(ChunkWindow& window, ChunkLink& link, const Options& options);
 
-  // Receives credits (waits for them until `deadline`) and sends the chunks that they allow. Throws
-  // Error naming both specs if the replay has another observation spec, and SupersededError.
+  // Receives credits (waits for credits until `deadline`) and sends the chunks that the credits
+  // allow. If the replay has another observation spec, throws Error naming both specs. Throws
+  // SupersededError if another process has this actor's number.
   void Exchange(SteadyTime deadline);
   // Makes a partial chunk ready to be sent by the next Exchange.
   void Flush() { window_.Flush(); }

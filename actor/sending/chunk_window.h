@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The sending side of the flow control between actor and replay. Records are written into chunks.
 // Chunks are sent within the window that the replay allows and kept until the replay acknowledges
-// them. They are resent to a new replay session, or if no acknowledgement arrives for a while. The
-// replay drops duplicates. A resend begins with a chunk without records, which reports the first
-// retained sequence: if the previous replay lost its memory, the new replay must not wait for
-// records that are gone.
+// them. Chunks are resent to a new replay session, or if no acknowledgement arrives for a while.
+// The replay drops duplicates. A resend begins with a chunk without records, which reports the
+// first retained sequence: if the previous replay lost its memory, the new replay must not wait for
+// records that no longer exist.
 //
 // Owns the chunk memory: `chunks` chunks of `chunk_records` records, allocated once. Independent of
 // DDS and clocks. One thread.
@@ -29,9 +29,9 @@ class ChunkWindow final : public RecordSink {
     uint64_t session = 0;
     int record_bytes = 0;
     int chunk_records = 0;        // records per chunk at most
-    int chunks = 0;               // >= 3: the replay's window and the open one
+    int chunks = 0;               // >= 3: the chunks of the replay's window, and the open chunk
     uint64_t first_records = 0;   // records that may be made before the first credit
-    uint64_t records_before = 0;  // of a continued session; all of them are stored
+    uint64_t records_before = 0;  // earlier records of a continued session; all are stored
   };
   explicit ChunkWindow(const Options& options);
 
@@ -45,17 +45,17 @@ class ChunkWindow final : public RecordSink {
   std::optional<TransitionChunk> NextToSend() const;
   void MarkSent();
 
-  // Applies the replay's newest credit, which may be lower than the one before. Credits of other
-  // actors and sessions are ignored.
+  // Applies the replay's newest credit, which may be lower than the previous credit. Credits of
+  // other actors and sessions are ignored.
   void OnCredit(const Credit& credit);
   // Begins a resend of everything that is not stored, for example if no credit has arrived for too
   // long. The first chunk has no records and reports where the resend begins.
   void Rewind();
 
   uint64_t stored() const { return stored_; }
-  // Records that the present credit still allows to be begun and sent.
+  // Number of records that the actor may still begin and send with the present credit.
   uint64_t CreditLeft() const { return allowed_ > last_sequence_ ? allowed_ - last_sequence_ : 0; }
-  // Time (time_ns) of the oldest unacknowledged record; empty if all records are acknowledged.
+  // Timestamp (time_ns) of the oldest unacknowledged record; empty if all records are acknowledged.
   std::optional<int64_t> OldestUnstoredNs() const;
   // Records begun in this session and not yet acknowledged.
   uint64_t Outstanding() const { return last_sequence_ - stored_; }
@@ -63,7 +63,7 @@ class ChunkWindow final : public RecordSink {
   uint64_t resent_records() const { return resent_records_; }
 
  private:
-  // The oldest retained sequence; if none is retained, the next sequence.
+  // The sequence of the oldest retained record; if no record is retained, the next sequence.
   uint64_t FirstKept() const;
 
   struct Chunk {
@@ -75,10 +75,10 @@ class ChunkWindow final : public RecordSink {
   };
 
   Options options_;
-  std::deque<Chunk> kept_;  // oldest first; the last one may be open
+  std::deque<Chunk> kept_;  // oldest first; the last chunk may be open
   std::vector<Chunk> free_;
   size_t unsent_from_ = 0;     // kept_[i] with i < unsent_from_ was sent in this replay session
-  bool position_due_ = false;  // the chunk without records is sent next
+  bool position_due_ = false;  // a chunk without records is sent next
   uint64_t stored_;
   uint64_t allowed_;  // highest sequence that may be made and sent
   uint64_t last_sequence_;

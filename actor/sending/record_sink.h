@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sink of a rollout's records. Provides memory for one record after another, as many as the
-// receiver allows.
+// Sink of a rollout's records. Provides memory for one record after another, for as many records as
+// the receiver allows.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ class RecordSink {
   virtual size_t Room() const = 0;
   // Memory for the next record, zeroed, aligned to 8, valid until EndRecord. Room() must not be 0.
   virtual uint8_t* BeginRecord() = 0;
-  // Completes the record begun last. `sequence` must follow the previous one.
+  // Completes the record begun last. `sequence` must be the previous sequence plus 1.
   virtual void EndRecord(uint64_t sequence) = 0;
 };
 

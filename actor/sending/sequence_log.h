@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sequence log: the *made* counter of an actor session and the next unused episode of each of its
-// environments. The mapped file survives SIGKILL of the actor, but not power loss. Records that are
-// counted as made and are not stored were lost with the process.
+// Sequence log: the number of records that an actor session has made, and the next unused episode
+// number of each of its environments. The mapped file survives SIGKILL of the actor, but not power
+// loss. Records that are counted as made and are not stored were lost with the process.
 //
 // File RUN/made/actor-ID-SESSION.page: SequenceLogHeader, then env_count u32 "next episode".
 #pragma once
@@ -26,9 +26,10 @@ static_assert(sizeof(SequenceLogHeader) == 40);
 // Owns the mapping. One thread.
 class SequenceLog {
  public:
-  // Creates the file of this session, or opens the existing one if the session continues
-  // (lockstep). Episode numbers continue those of earlier sessions with the same environments.
-  // Throws Error if the folder cannot be written, and Error (usage) if an older file is damaged.
+  // Creates the file of this session, or opens the existing file if the session continues
+  // (lockstep). Episode numbers continue the numbers of earlier sessions with the same
+  // environments. Throws Error if the folder cannot be written, and Error (usage) if an older file
+  // is damaged.
   SequenceLog(const std::filesystem::path& run, uint32_t actor, uint64_t session,
               uint32_t first_env, uint32_t env_count);
   ~SequenceLog();
@@ -52,7 +53,7 @@ struct MadeCount {
   uint32_t actor = 0;
   uint64_t session = 0;
   uint64_t made = 0;
-  bool rebuilt = false;  // `made` counts only the records that the receiver had seen
+  bool rebuilt = false;  // `made` counts only the records that the receiver has seen
 };
 
 // The counters of all sessions of a run, sorted by file name. Throws Error (usage) naming a damaged
@@ -73,7 +74,7 @@ struct DamagedPage {
 std::vector<DamagedPage> FindDamagedPages(const std::filesystem::path& run);
 
 // Replaces a damaged or missing file. `made` is the number of records that the receiver has seen.
-// Episode numbers continue at numbers that the session cannot have reached. Throws Error.
+// New episode numbers are so high that the session cannot have used them. Throws Error.
 void RebuildSequenceLog(const std::filesystem::path& run, uint32_t actor, uint64_t session,
                         uint32_t env_count, uint64_t made);
 

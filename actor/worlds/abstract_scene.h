@@ -18,7 +18,7 @@ class AbstractScene {
   AbstractScene(const AbstractScene&) = delete;
   AbstractScene& operator=(const AbstractScene&) = delete;
 
-  // Allocates memory for everything that the model may show. Resets the scene's flags.
+  // Allocates memory for all geoms that the model may show. Resets the scene's flags.
   void Allocate(const World& world);
   // Updates the scene to the world's current state, seen by `camera`. CHECK: Allocate was called.
   void Update(World* world, const CameraView& camera);

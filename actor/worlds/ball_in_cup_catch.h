@@ -26,7 +26,7 @@ class BallInCupCatch final : public ControlWorld {
   void Draw(Random* random) override;
   double Reward() const override;
 
-  int ball_joint_, ball_, ball_geom_, target_;  // coordinate, body, geom, site
+  int ball_joint_, ball_, ball_geom_, target_;  // in this order: coordinate, body, geom, site
 };
 
 std::unique_ptr<World> MakeBallInCupCatch(const std::string& model_file);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cameras of a task as configuration data: views of the engine's free camera, and the model's own.
+// Cameras of a task as configuration data: views of the engine's free camera, and cameras of the
+// model.
 #pragma once
 
 #include <array>
@@ -7,8 +8,8 @@
 
 namespace shoal::worlds {
 
-// A free view looks at `lookat` from `distance`; azimuth 0 looks along +x, 90 along +y; negative
-// elevation looks down. Its vertical field of view is the model's (45 degrees by default).
+// A free view looks at `lookat` from `distance`. Azimuth 0 looks along +x, 90 along +y; negative
+// elevation looks down. The vertical field of view is that of the model (45 degrees by default).
 //
 // If `body` is set, the view is mounted on that body and moves with the body. The numbers are then
 // in the body's frame, whose origin is the body's position.

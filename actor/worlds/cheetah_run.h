@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Physics half of cheetah_run: run forward.
 //
-//   reward = torso's forward speed / (10 m/s), at least 0, at most 1
+//   reward = forward speed of the whole body's centre of mass (sensor `torso_velocity`)
+//            / (10 m/s), at least 0, at most 1
 #pragma once
 
 #include <memory>
@@ -28,7 +29,7 @@ class CheetahRun final : public ControlWorld {
   void Settle() override;
   double Reward() const override;
 
-  int velocity_;  // of the whole body's centre of mass, in sensordata
+  int velocity_;  // index in sensordata of that velocity
 };
 
 std::unique_ptr<World> MakeCheetahRun(const std::string& model_file);

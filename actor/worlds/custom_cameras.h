@@ -12,7 +12,8 @@
 
 namespace shoal::worlds {
 
-// World::cameras(), then the model's named cameras whose names World::cameras() does not use.
+// All cameras of World::cameras(), then those named cameras of the model whose names
+// World::cameras() does not use.
 std::vector<CameraView> CamerasOf(const World& world);
 
 // The default camera: the first of CamerasOf. Throws Error (kUsage) if there is none.
@@ -22,18 +23,18 @@ CameraView DefaultCamera(const World& world);
 CameraView FindCamera(const World& world, const std::string& name);
 
 // The camera `name`: one of the world, of observation.custom_cameras or of the model. Throws Error
-// (kUsage) if there is no such camera, listing the known ones; if a custom camera has the name of a
-// camera of the world; and if the model lacks the body on which a camera is mounted.
+// (kUsage) if there is no such camera (the message lists the known cameras), if a custom camera has
+// the name of a camera of the world, and if the model lacks the body on which a camera is mounted.
 CameraView ChooseCamera(const World& world, const ObservationConfig& observation,
                         const std::string& name);
 
-// Names of a run's cameras: observation.cameras. If observation.cameras has its default value and
-// the task lacks one of these cameras, only the task's default camera.
+// Names of a run's cameras: observation.cameras. If that key has its default value and the task
+// lacks one of the named cameras, the result is the task's default camera alone.
 std::vector<std::string> ChooseCameras(const World& world, const ObservationConfig& observation);
 
-// Throws Error (kUsage) if a camera that the world lists is invalid: no name or a duplicate name,
-// numbers that are not finite, a distance that is not positive, or the number of a camera that the
-// model does not have.
+// Throws Error (kUsage) if a camera of World::cameras() is invalid: if it has no name or a
+// duplicate name, numbers that are not finite, a distance that is not positive, or the number of a
+// camera that the model does not have.
 void CheckCameras(const World& world);
 
 }  // namespace shoal::worlds

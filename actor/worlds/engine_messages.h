@@ -6,9 +6,10 @@
 
 namespace shoal::worlds {
 
-// Installs the callbacks; idempotent. Engine errors are then thrown as Error. Warnings are counted,
-// and logged for the first of each text and whenever the count of the text doubles. Without the
-// callbacks the engine would exit the process and write a file to the current folder.
+// Installs the callbacks; idempotent. Engine errors are then thrown as Error. Warnings are counted
+// by text. A warning is logged when its text first appears and whenever the count of the text
+// doubles. Without the callbacks the engine would end the process and write a file to the current
+// folder.
 void InstallEngineCallbacks();
 
 // Number of warnings since the process started, over all environments.

@@ -46,8 +46,8 @@ class Environment {
   // Starts the episode of the stream key. Equal keys and equal actions give bit-identical episodes,
   // independent of earlier episodes. Returns the distance at the start.
   virtual float Reset(uint64_t stream_key, ObservationOut out) = 0;
-  // Plays one env step: repeats `action` (A), each component in [-1, 1], for its control steps or
-  // until the episode ends. Observes once, after the last control step.
+  // Plays one env step: repeats `action` (A), each component in [-1, 1], for all control steps of
+  // the env step or until the episode ends. Observes once, after the last control step.
   virtual StepResult Step(std::span<const float> action, ObservationOut out) = 0;
   // Simulated time since a fixed moment before the last reset; always 0 if unknown.
   virtual double simulated_seconds() const { return 0; }
@@ -58,8 +58,8 @@ class Environment {
   // Masses drawn at the last reset, in drawing order; empty unless the configuration randomizes
   // masses.
   virtual std::span<const DrawnMass> drawn_masses() const = 0;
-  // Picture of the running episode's goal reached, drawn at the reset: (C, H, W) like a frame, from
-  // the same cameras. Empty unless the spec has a goal picture.
+  // Goal picture of the running episode: shows the goal reached. The picture is drawn at the reset
+  // by the cameras of the frames, (C, H, W) like a frame. Empty unless the spec has a goal picture.
   virtual std::span<const uint8_t> goal_picture() const { return {}; }
 };
 
@@ -67,8 +67,8 @@ class Environment {
 class RenderContext;
 std::shared_ptr<RenderContext> MakeRenderContext(const ObservationConfig& observation);
 
-// Makes the environment of a configuration. Throws Error on an unknown task (listing the known
-// ones), an unknown camera, or a model file that does not load. `render` may be null if
+// Makes the environment of a configuration. Throws Error on an unknown task (the message lists the
+// known tasks), an unknown camera, or a model file that does not load. `render` may be null if
 // config.observation.pixels is false.
 std::unique_ptr<Environment> MakeEnvironment(const Config& config,
                                              std::shared_ptr<RenderContext> render);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fault of an episode: a number of the simulation is not finite. Training ends the episode and
-// begins another one. Bad policies and mistakes in a task are other kinds of errors.
+// begins another episode.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 namespace shoal::worlds {
 
 enum class FaultCause {
-  kDiverged,     // the simulation's state, or a fault that the physics half reports itself
+  kDiverged,     // the simulation's state is not finite, or the physics half itself reports a fault
   kObservation,  // a number that World::Observe wrote
   kReward,       // a reward that the physics half returned
 };

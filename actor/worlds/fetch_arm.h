@@ -23,12 +23,12 @@ struct FetchArmSetup {
   bool block_gripper = true;        // keeps the fingers shut
 };
 
-// Member of the world whose model and state it moves; borrows both.
+// Moves the model and state of a world. A FetchArm is a member of this world and borrows both.
 class FetchArm {
  public:
   static constexpr int kEngineStepsPerEnvStep = 20;
 
-  // Throws Error naming the element that the model lacks.
+  // Throws Error if the model lacks an element; the message names the element.
   FetchArm(World* world, const FetchArmSetup& setup, Physics physics);
 
   // Moves the gripper to the start position of episodes and keeps this initial state. Call it once,
@@ -37,8 +37,8 @@ class FetchArm {
   // Position of the grip site in m after SetUp. The value is one engine step old.
   const std::array<double, 3>& initial_grip() const { return initial_grip_; }
 
-  // Restores the initial state. Everything else (mocap pose, solver warm start) is as in newly made
-  // data.
+  // Restores the initial state. All other data (mocap pose, solver warm start) gets the values of
+  // newly made data.
   void RestoreInitialState();
 
   // Applies an action. action[0..2]: displacement in units of 5 cm; action[3]: fingers, ignored
@@ -49,17 +49,17 @@ class FetchArm {
   void FinishStep();
 
   // Moves the gripper for pictures of goals. The engine runs until the grip site is within 1 mm of
-  // `position` (m), or for at most 20 env steps. Each finger is then `opening` m from the middle,
-  // the arm is at rest, and positions are up to date.
+  // `position` (m), but for at most 20 env steps. Afterwards each finger is `opening` m from the
+  // middle, the arm is at rest, and positions are up to date.
   void MoveTo(const std::array<double, 3>& position, double opening);
 
   // Position of the grip site in m.
   std::array<double, 3> GripPosition() const;
   // Linear velocity of the grip site times the duration of an env step, m per env step.
   std::array<double, 3> GripVelocity() const;
-  // (right, left): positions of the finger joints in m, and their velocities times the duration of
-  // an env step.
+  // Positions of the finger joints (right, left) in m.
   std::array<double, 2> Fingers() const;
+  // Velocities of the finger joints (right, left) times the duration of an env step.
   std::array<double, 2> FingerVelocities() const;
   // Duration of an env step: 0.04 s.
   double StepSeconds() const;
@@ -70,9 +70,9 @@ class FetchArm {
   World* world_;
   FetchArmSetup setup_;
   int grip_site_, gripper_body_, mocap_;
-  std::array<int, 2> finger_position_, finger_velocity_;  // (right, left) in qpos, qvel
-  std::array<int, 3> base_position_;                      // slides in qpos
-  std::vector<int> motor_position_;  // in qpos: of the joint that each actuator drives
+  std::array<int, 2> finger_position_, finger_velocity_;  // (right, left), indices in qpos, qvel
+  std::array<int, 3> base_position_;                      // indices of the slides in qpos
+  std::vector<int> motor_position_;  // index in qpos of the joint of each actuator
   std::array<double, 3> initial_grip_{};
   double initial_time_ = 0;
   std::vector<double> initial_qpos_, initial_qvel_;

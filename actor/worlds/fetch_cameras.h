@@ -16,7 +16,8 @@ std::span<const CameraView> FetchCameras();
 std::span<const CameraView> FetchPickAndPlaceCameras();
 std::span<const CameraView> FetchSlideCameras();
 
-// Cameras for films, high at the side, so that gripper and arm seldom hide the object or the goal.
+// Cameras for films. They look down from the side, so that gripper and arm seldom hide the object
+// or the goal.
 const CameraView& FetchPushFilmCamera();
 const CameraView& FetchPickAndPlaceFilmCamera();
 const CameraView& FetchSlideFilmCamera();

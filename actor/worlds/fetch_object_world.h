@@ -15,7 +15,7 @@ namespace shoal::worlds {
 enum class GripperAtGoal {
   kAbove,   // 10 cm above the object, fingers shut, no contact; visible to a wrist camera
   kAround,  // grip site in the middle of the object, fingers at the object's sides
-  kStart,   // start position of episodes: the arm cannot reach the goals
+  kStart,   // start position of episodes, for tasks whose goals the arm cannot reach
 };
 
 struct FetchObjectSetup {
@@ -23,11 +23,11 @@ struct FetchObjectSetup {
   std::span<const CameraView> (*cameras)();
   const CameraView& (*film_camera)();
   FetchArmSetup arm;
-  std::array<double, 3> object{};  // position before the set-up's engine steps, m; unturned
+  std::array<double, 3> object{};  // position before the set-up's engine steps, m; not rotated
   double object_range = 0;         // largest offset of the object from the grip, each axis, m
   double goal_range = 0;           // largest offset of the goal from the grip, each axis, m
-  double goal_offset_x = 0;        // added to the goal, m
-  bool goal_in_the_air = false;    // half of the goals are above the table
+  double goal_offset_x = 0;        // added to the goal's x, m
+  bool goal_in_the_air = false;    // half of the goals are in the air above the table
   GripperAtGoal gripper_at_goal = GripperAtGoal::kAbove;
 };
 
@@ -38,7 +38,7 @@ class FetchObjectWorld final : public FetchWorld {
 
   // Draws in this order: the object's x and y, repeated until the object is 10 cm or more from the
   // grip; three numbers x, y, z for the goal (z is not used); if goals may be in the air, a uniform
-  // number, and if this is below 1/2, the height above the table.
+  // number, and if this number is below 1/2, the goal's height above the table.
   void Reset(Random* random) override;
   // observation (25): see the goal half.
   void Observe(std::span<double> observation, std::span<double> achieved_goal,
@@ -58,8 +58,8 @@ class FetchObjectWorld final : public FetchWorld {
 
   FetchObjectSetup setup_;
   int object_site_;
-  int object_position_;  // in qpos
-  int object_velocity_;  // in qvel
+  int object_position_;  // index in qpos
+  int object_velocity_;  // index in qvel
   double table_height_ = 0;
 };
 

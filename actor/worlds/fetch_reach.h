@@ -13,8 +13,8 @@ class FetchReach final : public FetchWorld {
   // Throws Error if the model does not load or lacks an element.
   explicit FetchReach(const WorldOptions& options = {});
 
-  // Draws the goal: three uniform numbers, x, y, z in this order, within 15 cm of the grip's
-  // initial position along each axis.
+  // Draws the goal: uniform numbers for x, y and z in this order, each within 15 cm of the grip's
+  // initial position.
   void Reset(Random* random) override;
   // observation (10): grip position, fingers, grip velocity, finger velocities; see the goal half.
   void Observe(std::span<double> observation, std::span<double> achieved_goal,

@@ -34,12 +34,12 @@ class FetchWorld : public World {
   virtual int object_site() const { return -1; }
 
  protected:
-  // `model_name`: the embedded model to load unless the options name a user's. `cameras` outlive
-  // the world.
+  // `model_name`: the embedded model, which is loaded unless the options name a user's model.
+  // `cameras` outlive the world.
   FetchWorld(const std::string& model_name, const WorldOptions& options, const FetchArmSetup& setup,
              std::span<const CameraView> cameras);
 
-  // Places the object. ResetTo calls PlaceObject after restoring the initial state.
+  // Places the object. ResetTo calls PlaceObject after it has restored the initial state.
   virtual void PlaceObject(const std::array<double, 2>& /*xy*/) {}
 
   // See FetchArm::SetUp. Call once, at the end of the constructor, after the object is placed.

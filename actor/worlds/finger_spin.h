@@ -26,8 +26,8 @@ class FingerSpin final : public ControlWorld {
   void Draw(Random* random) override;
   double Reward() const override;
 
-  int spinner_, tip_;             // body, site
-  int touch_top_, touch_bottom_;  // in sensordata
+  int spinner_, tip_;             // spinner: a body; tip: a site
+  int touch_top_, touch_bottom_;  // indices in sensordata
 };
 
 std::unique_ptr<World> MakeFingerSpin(const std::string& model_file);

@@ -8,7 +8,7 @@
 namespace shoal::worlds {
 
 // pixels (H, W, 3): interleaved RGB, row 0 = bottom. planes (3, H, W) or (1, H, W): row 0 = top.
-// The two must not overlap. CHECK on sizes.
+// Pixels and planes must not overlap. CHECK on sizes.
 
 // Writes one plane per colour, red first.
 void PackRgb(std::span<const uint8_t> pixels, int height, int width, std::span<uint8_t> planes);

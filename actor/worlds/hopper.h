@@ -2,7 +2,7 @@
 // Physics half of the Hopper tasks: a planar one-legged robot, rewarded for moving forward.
 //
 // Follows Gymnasium's Hopper-v4 and v5, and the "custom hopper" pair for sim-to-sim transfer. The
-// torso of the pair's source is one kilogram lighter than that of the target.
+// torso of the source is one kilogram lighter than the torso of the target.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,8 @@
 namespace shoal::worlds {
 
 struct HopperVariant {
-  // Uses the masses and inertias of capsules in MuJoCo up to 2.1.0, instead of the exact ones.
+  // Uses the masses and inertias that MuJoCo up to 2.1.0 gives capsules, instead of the exact
+  // values.
   bool old_masses = false;
   // Added to the torso's mass (kg). Quantities derived from the mass are not recomputed.
   double torso_mass_change = 0;
@@ -40,7 +41,7 @@ class Hopper final : public World {
 
   // reward = forward velocity + 1 if healthy - 0.001 |action|^2; terminates when not healthy.
   Outcome Step(std::span<const double> action) override;
-  // observation (11): positions without x, velocities; see the goal half. No goals.
+  // observation (11): positions without x, velocities; see the goal half. The task has no goals.
   void Observe(std::span<double> observation, std::span<double> achieved_goal,
                std::span<double> desired_goal) const override;
   // track: follows the centre of mass, like the published camera. free: does not move.

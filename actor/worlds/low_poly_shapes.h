@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cylinders and capsules with few triangles, which the engine draws in place of its own.
+// Cylinders and capsules with few triangles. They replace the engine's cylinders and capsules.
 //
 // The engine divides every side along its axis and every cap along its radius, as finely as a
 // sphere from pole to pole. At 84x84 these divisions are invisible, but they cause most of the cost
-// of a robot of such shapes. Here sides are not divided, flat caps have no centre vertex, and a
-// capsule is one object instead of three.
+// of drawing a robot of such shapes. Here sides are not divided, flat caps have no centre vertex,
+// and a capsule is one object instead of three.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cameras of a model: fixed, following a body (track, trackcom) or turning to a body
+// The cameras of a model. A camera is fixed, follows a body (track, trackcom) or turns to a body
 // (targetbody).
 #pragma once
 

@@ -12,12 +12,12 @@ namespace shoal::worlds {
 // meshes are looked up in the same folder. Otherwise returns a copy of the embedded file `name`
 // ("fetch_reach.xml"), which is compiled once per process. `addition`: MJCF elements
 // ("<equality>...</equality>") that are appended to the model. Equal text gives equal models,
-// procedural textures included. Any thread; users' files on one thread at a time. Throws Error with
-// the engine's reason if the model does not load.
+// including procedural textures. May be called on any thread; a user's file on one thread at a
+// time. Throws Error with the engine's reason if the model does not load.
 ModelHandle LoadModel(const std::string& name, const std::string& user_file,
                       const std::string& addition = "");
 
-// Makes the state of a model, with all of its buffers.
+// Allocates the state of a model, with all of its buffers.
 DataHandle MakeData(const mjModel_& model);
 
 // Hex hash of the compiled model's numbers and the engine's version. Equal models have equal

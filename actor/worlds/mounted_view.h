@@ -10,12 +10,13 @@ struct mjvScene_;
 
 namespace shoal::worlds {
 
-// Throws Error (kUsage) naming camera and body if the model lacks the body of a mounted view.
+// If the model lacks the body of a mounted view, throws Error (kUsage) naming camera and body.
 // Accepts views that are not mounted.
 void CheckMount(const mjModel_& model, const CameraView& camera);
 
-// Moves the scene's camera and headlight to the present pose of the mounted `camera`. The scene was
-// updated with a free camera before, whose field of view is kept. CHECK: CheckMount passes.
+// Moves the scene's camera and headlight to the present pose of the mounted `camera`. Before this
+// call, the scene has been updated with a free camera; the field of view of the free camera is
+// kept. CHECK: CheckMount passes.
 void MountCamera(const mjModel_& model, const mjData_& data, const CameraView& camera,
                  mjvScene_* scene);
 

@@ -7,9 +7,9 @@
 
 namespace shoal::worlds {
 
-// The engine's reason for not loading a model, as one line. If the reason is a word of a newer
-// MJCF, adds the version that introduced the word, this engine's version, and a short replacement
-// if there is one.
+// Returns `reason`, the engine's message about a model that does not load, as one line. If the
+// engine does not know a word of a newer MJCF, adds the version that introduced the word, this
+// engine's version, and a short replacement if there is one.
 std::string WithNewerMjcf(const std::string& reason);
 
 }  // namespace shoal::worlds

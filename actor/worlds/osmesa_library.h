@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The OSMesa library, opened at run time. Programs start without OSMesa and need it only for the
-// qualities that it draws.
+// The OSMesa library, opened at run time. Programs start without OSMesa. Only the qualities fast
+// and reference need OSMesa.
 #pragma once
 
 #include <GL/gl.h>
@@ -26,11 +26,12 @@ struct OsmesaLibrary {
   decltype(&glVertex3fv) vertex;
 };
 
-// The library, opened once per process and then kept open. Any thread. Throws Error (kRuntime) in
-// one line that names the package to install and the quality that does not need OSMesa.
+// The library, opened once per process and then kept open. Any thread. If the library cannot be
+// opened, throws Error (kRuntime) in one line that names the package to install and the quality
+// that does not need OSMesa.
 const OsmesaLibrary& Osmesa();
 
-// Opens the library of this file name; for Osmesa() and its test.
+// Opens the library of this file name; used by Osmesa() and its test.
 OsmesaLibrary OpenOsmesa(const char* file);
 
 }  // namespace shoal::worlds

@@ -31,7 +31,8 @@ class Painter {
   // Draws `world`, which has the model of TakeModel. planes (3, H, W) uint8, or (1, H, W) if the
   // observation is grey; row 0 = top.
   virtual void Draw(World* world, const CameraView& camera, std::span<uint8_t> planes) = 0;
-  // Sets the output of later calls of Draw. Throws Error (kUsage) if this quality does not have it.
+  // Sets the output of later calls of Draw. Throws Error (kUsage) if this quality does not have the
+  // output.
   virtual void SetOutput(PainterOutput output);
 };
 

@@ -19,7 +19,7 @@ class ReacherEasy final : public ControlWorld {
   // element.
   explicit ReacherEasy(const std::string& model_file);
 
-  // Sets the target's centre (m) for the next ResetTo. Reset draws a new position.
+  // Sets the target's centre (m) for the next ResetTo. Reset draws a new centre.
   void PlaceTarget(const std::array<double, 2>& position);
   // The goal half documents the order of the numbers. The task has no goals.
   void Observe(std::span<double> observation, std::span<double> achieved_goal,

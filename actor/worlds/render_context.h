@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Off-screen rendering at the size of a frame, in the quality that the configuration names.
 //
-// One context draws one model; all environments of a process have copies of the same model. One
-// thread.
+// One context draws one model, because all environments of a process have copies of the same model.
+// One thread.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ class RenderContext {
   // Channels of one camera: 1 grey, 3 RGB.
   int channels_per_camera() const { return grey_ ? 1 : 3; }
 
-  // Sets the output of later calls of Render. Throws Error (kUsage) if the quality only has
+  // Sets the output of later calls of Render. Throws Error (kUsage) if the quality has only
   // colours.
   void SetOutput(PainterOutput output) { painter_->SetOutput(output); }
 

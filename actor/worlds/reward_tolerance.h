@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Control Suite's building block of rewards: 1 inside an interval, falling off outside.
+// The Control Suite's building block of rewards: 1 inside an interval, smaller outside.
 //
 //   Tolerance(x) = 1                 for low <= x <= high
-//                  S(d s)            else, d = distance to the nearer bound / margin
-//                  0                 else, where margin = 0
+//                  S(d s)            outside, d = distance to the nearer bound / margin
+//                  0                 outside, if margin = 0
 //
 //   fall-off    S(z)               scale s, so that S = v at one margin
 //   gaussian    exp(-z^2 / 2)      sqrt(-2 ln v), 0 < v < 1
@@ -22,7 +22,7 @@ struct ToleranceShape {
   double value_at_margin = 0.1;  // v
 };
 
-// CHECK on a shape outside these bounds.
+// CHECK: the shape is within these bounds.
 double Tolerance(double x, const ToleranceShape& shape);
 
 }  // namespace shoal::worlds

@@ -26,8 +26,8 @@ class WalkerWalk final : public ControlWorld {
   void Draw(Random* random) override;
   double Reward() const override;
 
-  int torso_;     // body; the limbs follow it
-  int velocity_;  // of the whole body's centre of mass, in sensordata
+  int torso_;     // body; the bodies of the limbs have the next numbers
+  int velocity_;  // index in sensordata of the velocity of the whole body's centre of mass
 };
 
 std::unique_ptr<World> MakeWalkerWalk(const std::string& model_file);

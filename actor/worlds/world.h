@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The physics half of a task: a model, its state, and the effect of reset and step on both. Pixel
-// layouts, rewards for goals and episode lengths are handled elsewhere.
+// layouts, rewards for goals and episode lengths belong to other classes.
 //
 // A step here is a control step; the environment repeats actions.
 //
@@ -38,44 +38,46 @@ class World {
   // `action`: the task's components, each in [-1, 1].
   virtual Outcome Step(std::span<const double> action) = 0;
   // Writes every number of the task's blocks; the goals are empty for tasks without goals. If a
-  // number is not written, or is written beyond a span, the program ends with a line that names the
-  // block.
+  // number is not written, or if a number is written beyond a span, the program ends with a line
+  // that names the block.
   virtual void Observe(std::span<double> observation, std::span<double> achieved_goal,
                        std::span<double> desired_goal) const = 0;
-  // Hides the goal in all frames drawn from now on. False: the goal cannot be hidden.
+  // Hides the goal in all frames drawn from now on. Returns false if the goal cannot be hidden.
   virtual bool HideGoal() { return false; }
   // Cameras of the world; the first is the default camera. ModelCameras
   // (actor/worlds/model_cameras.h) returns the named cameras of the model. observation.cameras may
-  // name a camera of the model even if it is not listed here. The span is valid as long as the
-  // world.
+  // name a camera of the model even if cameras() does not list this camera. The span is valid as
+  // long as the world.
   virtual std::span<const CameraView> cameras() const = 0;
-  // Camera of the larger view of films, not in cameras(); null if films use one of cameras(). Valid
-  // as long as the world.
+  // Camera of the larger view of films; not part of cameras(). Null: films use a camera of
+  // cameras(). Valid as long as the world.
   virtual const CameraView* film_camera() const { return nullptr; }
   // True if the task implements MoveToGoal, which pictures of goals need.
   virtual bool CanMoveToGoal() const { return false; }
-  // Applies MoveToGoal to the state of the running episode, calls `look`, and restores the state to
-  // the last bit. CHECK: CanMoveToGoal().
+  // Applies MoveToGoal to the state of the running episode, calls `look`, and then restores the
+  // state bit for bit. CHECK: CanMoveToGoal().
   void LookAtGoal(const std::function<void()>& look);
 
   mjModel_& model() { return *model_; }
   const mjModel_& model() const { return *model_; }
   mjData_& data() { return *data_; }
   const mjData_& data() const { return *data_; }
-  // The engine's clock.
+  // Time of the engine's clock.
   double simulated_seconds() const;
   // Fingerprint of the loaded model before any change: see ModelFingerprint.
   const std::string& fingerprint() const { return fingerprint_; }
 
-  // Frees the memory of the model's textures: 11 MB of sky for each world of the Control Suite. Use
-  // it for worlds that are never drawn, or whose render context already has the model.
+  // Frees the memory of the model's textures: 11 MB of sky for each world of the Control Suite.
+  // Call ReleaseTextures for worlds that are never drawn, or whose render context already has the
+  // model.
   void ReleaseTextures();
   bool textures_released() const { return textures_released_; }
 
   // Name of the model in messages: "the model" or "model file 'mine.xml'".
   const std::string& source() const { return source_; }
 
-  // Ids of named elements. Throw Error naming the model and the missing element.
+  // Ids of named elements. If the element is missing, the functions throw Error naming the model
+  // and the element.
   int BodyId(const std::string& name) const;
   int SiteId(const std::string& name) const;
   int JointId(const std::string& name) const;
@@ -97,8 +99,8 @@ class World {
   void SetControls(std::span<const double> action);
   // Makes `count` engine steps, then calls CheckState.
   void Advance(int count);
-  // Throws EpisodeFault if the state became non-finite or too large. The engine has then reset the
-  // state without an error, so the episode must end.
+  // Throws EpisodeFault if the state has become non-finite or too large. The engine has then reset
+  // the state without an error, so the episode must end.
   void CheckState() const;
 
  private:
@@ -110,8 +112,8 @@ class World {
   ModelHandle model_;
   std::string source_;
   DataHandle data_;
-  // Computed last: the computation needs as much memory as the model, which is then free for the
-  // next world.
+  // Computed after the other members. The computation needs as much memory as the model; this
+  // memory is then free for the next world.
   std::string fingerprint_;
   bool textures_released_ = false;
   DataHandle kept_data_;  // the episode's state during LookAtGoal; null before the first call

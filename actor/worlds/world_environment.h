@@ -64,7 +64,7 @@ class WorldEnvironment final : public Environment {
   bool goal_hidden_ = false;
   ObservationSpec spec_;
   std::vector<uint8_t> goal_picture_;  // (C, H, W); empty if the spec has no goal picture
-  ObservedNumbers observed_;  // float64 numbers of the world; the next three are rounded to float32
+  ObservedNumbers observed_;  // the world's numbers, float64; the next members hold them as float32
   std::vector<float> state_, achieved_goal_, desired_goal_;
   std::vector<double> action_;
   double render_seconds_ = 0;

@@ -7,17 +7,18 @@
 namespace shoal::worlds {
 
 struct WorldOptions {
-  std::string model = "";           // path of another MJCF file; empty = the task's own
+  std::string model = "";           // path of another MJCF file; empty = the task's own file
   std::string physics = "mujoco2";  // mujoco2 | mujoco3 (see fetch_weld.h)
   // Absolute folder of the task library that contains the physics half, set by MakeWorld; empty for
   // built-in physics halves.
   std::string task_folder = "";
 
-  // The path of a file beside the task library: Beside("model/arm.xml").
+  // The path of a file in the folder of the task library: Beside("model/arm.xml").
   std::string Beside(const std::string& file) const {
     return task_folder.empty() ? file : task_folder + "/" + file;
   }
-  // The model file to load: the user's; if there is none, `file` beside the task library.
+  // The model file to load: the user's file; if there is none, `file` in the folder of the task
+  // library.
   std::string ModelOr(const std::string& file) const {
     return model.empty() ? Beside(file) : model;
   }

@@ -14,8 +14,9 @@ struct CheckRequest {
   std::filesystem::path run_dir = "runs";  // folder for runs; need not exist
 };
 
-// Runs the checks one after another, passes each line to `show` as soon as it is known, and returns
-// all lines. Takes well under a minute. A check that fails gives a FAIL line, never an exception.
+// Runs the checks one after another, passes each line to `show` as soon as the line is known, and
+// returns all lines. Takes well under a minute. A failed check gives a FAIL line, never an
+// exception.
 std::vector<CheckLine> CheckMachine(const CheckRequest& request,
                                     const std::function<void(const CheckLine&)>& show);
 

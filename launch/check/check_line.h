@@ -20,7 +20,7 @@ const char* ToString(Verdict verdict);
 struct CheckLine {
   std::string name;  // "cpu"
   Verdict verdict = Verdict::kOk;
-  std::string finding;  // with figures and units
+  std::string finding;  // with numbers and units
   std::string advice;   // what to do; empty if OK
 };
 

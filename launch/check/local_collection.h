@@ -21,8 +21,8 @@ namespace shoal::launch {
 // One thread. Borrows nothing.
 class LocalCollection {
  public:
-  // `folder` gets the actor's page of made records and, with replay.storage = file, the ring.
-  // Throws Error if the environment does not match the run, or if there is no space for the ring.
+  // Writes to `folder` the actor's sequence log and, if replay.storage = file, the ring. Throws
+  // Error if the environment does not match the run, or if there is no space for the ring.
   LocalCollection(const RunConfig& run, const std::filesystem::path& folder);
 
   // Plays and stores at least `env_steps` more steps. Throws Error with the reason if the replay

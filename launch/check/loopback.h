@@ -22,12 +22,13 @@ struct LoopbackRate {
   }
 };
 
-// Starts a second process of this program (RunLoopbackPeer), sends chunks of 1 MB for `duration`,
-// at most four unacknowledged, and returns the counts of the arrived chunks. Throws Error if the
-// two processes do not discover each other, or if a chunk is not acknowledged in time.
+// Starts a second process of this program (RunLoopbackPeer) and sends chunks of 1 MB for
+// `duration`. At most four chunks are unacknowledged at a time. Returns the counts of the arrived
+// chunks. Throws Error if the two processes do not discover each other, or if a chunk is not
+// acknowledged in time.
 LoopbackRate MeasureLoopback(const TransportConfig& transport, std::chrono::milliseconds duration);
 
-// The other side: acknowledges chunks until it receives a stop request. `folder` holds
+// The second process: acknowledges chunks until a stop request arrives. `folder` holds
 // cluster.json.
 int RunLoopbackPeer(const std::filesystem::path& folder, const TransportConfig& transport);
 

@@ -21,11 +21,11 @@ CheckLine JudgeCores(const CoreLimits& limits);
 // (docs/install.md). `release_files` are tried in order: /etc/os-release, /usr/lib/os-release.
 CheckLine JudgeSystem(const std::vector<std::filesystem::path>& release_files);
 
-// Space that a run of the default preset needs.
+// Space and transfer rate that a run of the default preset needs.
 struct Needs {
-  uint64_t ring_bytes = 0;     // of the replay, a file in the run folder
-  double loopback_rate = 0;    // bytes/s of records, over loopback to the replay
-  uint64_t process_bytes = 0;  // memory of all processes, without the ring
+  uint64_t ring_bytes = 0;     // ring of the replay, a file in the run folder
+  double loopback_rate = 0;    // records sent over loopback to the replay, bytes/s
+  uint64_t process_bytes = 0;  // memory of all processes without the ring
 };
 
 // Free space for the ring in `run_dir` or, if `run_dir` does not exist yet, in its nearest existing
@@ -34,11 +34,12 @@ CheckLine LookAtDisk(const std::filesystem::path& run_dir, const Needs& needs);
 // The path, or its nearest existing parent folder.
 std::filesystem::path ExistingFolder(const std::filesystem::path& path);
 
-// `available`: bytes, limited by `source`. The ring is fast only if its pages stay in memory.
+// `available`: available memory in bytes; `source`: name of the limit. The ring is fast only if its
+// pages stay in memory.
 CheckLine JudgeMemory(uint64_t available, const std::string& source, const Needs& needs);
 
-// Free space in `folder` ("/dev/shm"). Shown because users look for this value; no process uses the
-// folder.
+// Free space in `folder` ("/dev/shm"). The line is shown because users look for this value; no
+// process uses the folder.
 CheckLine LookAtSharedMemory(const std::filesystem::path& folder);
 
 }  // namespace shoal::launch

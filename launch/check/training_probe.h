@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests learning on this machine: makes a few updates on batches of real frames, then writes a
-// checkpoint, reads it again and compares.
+// checkpoint, reads the checkpoint again and compares the tensors.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,11 @@ struct TrainingProbe {
   uint64_t env_steps = 0, updates = 0;
   double env_steps_per_second = 0;  // of one thread, with rendering and storing
   double updates_per_second = 0;    // of one thread
-  bool finite = false;              // all figures of all updates were finite
+  bool finite = false;              // all numbers of all updates were finite
   bool moved = false;               // the policy's parameters have changed
   uint64_t checkpoint_bytes = 0;
-  bool restored = false;   // an agent restored from the checkpoint has the same tensors, bit by bit
-  bool continued = false;  // its next update equals that of the first agent bit by bit
+  bool restored = false;   // an agent restored from the checkpoint has the same tensors bit by bit
+  bool continued = false;  // the restored agent's next update equals the first agent's bit by bit
 };
 
 // Trains `config` for `updates` updates in this process and writes files to `folder`. Throws Error

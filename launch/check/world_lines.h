@@ -10,13 +10,13 @@ namespace shoal::launch {
 // `share`: share of the camera's pixels that show the robot, 0..1.
 CheckLine JudgePicture(const std::string& camera, double share);
 
-// Draws a picture of each of the configuration's cameras in its size. Reports the first camera that
-// fails, or the share of robot pixels of each picture. Only for tasks of the Fetch robot. Throws
-// Error if drawing is impossible.
+// Draws a picture with each of the configuration's cameras, in the size of frames. Reports the
+// first camera that fails, or the share of robot pixels in each picture. Only for tasks of the
+// Fetch robot. Throws Error if drawing is impossible.
 CheckLine LookAtPictures(const Config& config);
 
-// LookAtPictures in quality fast, which needs OSMesa. Returns WARN where LookAtPictures returns
-// FAIL, because runs in quality native do not need OSMesa.
+// Like LookAtPictures in quality fast, which needs OSMesa. Returns WARN where LookAtPictures
+// returns FAIL, because runs in quality native do not need OSMesa.
 CheckLine LookAtOpenGl(Config config);
 
 // Replays the embedded reference. Throws Error if the replay is impossible.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `shoal attach`: the progress of a running run, in another process than its coordinator.
+// `shoal attach`: shows the progress of a run in another process than the run's coordinator.
 #pragma once
 
 #include <chrono>
@@ -9,11 +9,11 @@
 
 namespace shoal::launch {
 
-// If no view arrives for so long, the coordinator counts as dead.
+// If no view arrives for this time, the coordinator is treated as dead.
 inline constexpr std::chrono::seconds kAttachedSilence{15};
 
-// Shows progress and events until the run ends, and returns its exit code; 0 after a stop signal.
-// Throws Error: the coordinator does not answer, or is silent.
+// Shows progress and events until the run ends, and returns the run's exit code; 0 after a stop
+// signal. Throws Error if the coordinator does not answer, or is silent for kAttachedSilence.
 int ShowAttached(RunClient& client, Progress& progress);
 
 }  // namespace shoal::launch

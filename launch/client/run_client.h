@@ -25,9 +25,10 @@ class RunClient {
   // run, past and future; not 0. Borrows the hub. Throws Error.
   RunClient(link::Hub& hub, const RunTarget& target, uint64_t id);
 
-  // The next view not returned before, waiting until `deadline` or a stop signal.
+  // Returns the next new view. Waits for a view until `deadline` or a stop signal; empty if no view
+  // arrived.
   std::optional<RunViewMessage> WaitForView(SteadyTime deadline);
-  // The first view. Throws Error naming the run when the coordinator does not answer in time.
+  // The first view. If the coordinator does not answer in time, throws Error naming the run.
   RunViewMessage FirstView();
 
   // Sends a command and returns the coordinator's reply. Throws Error if the coordinator refuses
@@ -37,7 +38,7 @@ class RunClient {
   static constexpr std::chrono::seconds kAnswer{5};
 
  private:
-  // The reply to the command; empty when there is none within kAnswer.
+  // The reply to the command; empty if no reply arrives within kAnswer.
   std::optional<ReplyMessage> Ask(const CommandMessage& command);
 
   const RunTarget target_;
@@ -49,7 +50,7 @@ class RunClient {
   std::optional<ReplyMessage> reply_ SHOAL_GUARDED_BY(mutex_);
   link::Writer<CommandMessage> commands_;
   link::Reader<ReplyMessage> replies_;
-  link::Reader<RunViewMessage> views_;  // last: its callback uses the rest
+  link::Reader<RunViewMessage> views_;  // last, because its callback uses the other members
 };
 
 // The exit code of a run that has ended, from its last view.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The complete command line of `shoal`, which main parses and from which the manual is made.
+// The complete command line of `shoal`. main parses it, and the manual is generated from it.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,8 @@
 
 namespace shoal::launch {
 
-// Parsing stores the action of the given command in `*chosen`, which must outlive the command line.
+// Parsing stores the action of the user's command in `*chosen`, which must outlive the command
+// line.
 std::unique_ptr<CLI::App> MakeCommandLine(Action* chosen);
 
 // Parses the command line, runs its command and returns the exit code. Throws Error.

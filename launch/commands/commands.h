@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The commands that every build of `shoal` has, one file each. A command adds itself to the command
-// line. When the user gives the command, it stores its action in `*chosen`; main runs the action,
-// which returns the exit code.
+// The commands that every build of `shoal` has, one file each. Each function adds a command to the
+// command line. If the user gives the command, parsing stores the command's action in `*chosen`.
+// main runs the action, which returns the exit code.
 #pragma once
 
 #include <functional>

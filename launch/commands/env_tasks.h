@@ -8,7 +8,7 @@ namespace shoal::launch {
 
 void AddEnvTaskCommands(CLI::App& env, Action* chosen);
 
-// env check (env_check.cpp), for environments of Python.
+// Command env check (env_check.cpp), for environments of Python.
 void AddEnvCheckCommand(CLI::App& env, Action* chosen);
 
 }  // namespace shoal::launch

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Destination of --json FILE: the file, or standard output for "-". With "-" the
-// command prints its text on standard error.
+// Destination of --json FILE: the file, or standard output for "-". With "-" the command prints its
+// text on standard error.
 #pragma once
 
 #include <cstdio>
@@ -10,7 +10,8 @@ namespace shoal::launch {
 
 class JsonOutput {
  public:
-  // Who may read the file: only the user, or others as the umask permits (common/base/files.h).
+  // Users who may read the file: only this user, or others as the umask permits
+  // (common/base/files.h).
   enum class Readers { kUser, kOthers };
 
   // `file` is empty if no JSON is requested. Throws Error if the file cannot be written.

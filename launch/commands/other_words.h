@@ -12,7 +12,7 @@ class App;
 namespace shoal::launch {
 
 // Hint for an unknown command: "; shoal film RUN films a policy, ..." if the word is known from
-// other programs; else the most similar of `names`; else empty.
+// other programs; otherwise the most similar of `names`; empty if no name is similar.
 std::string HintForCommand(const std::string& command, const std::vector<std::string>& names);
 
 // The WordHint (common/base/command_line.h) of `shoal`.

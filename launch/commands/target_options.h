@@ -15,7 +15,7 @@ class Option;
 
 namespace shoal::launch {
 
-// Adds the options by which every command accepts a run: an argument or --run with a name or
+// Adds the options with which every command accepts a run: an argument or --run with a name or
 // folder, and --run-dir, the folder of named runs. The strings are borrowed and must live as long
 // as the command line.
 CLI::Option* AddRunOption(CLI::App& command, std::string* run, std::string* run_dir,
@@ -23,7 +23,7 @@ CLI::Option* AddRunOption(CLI::App& command, std::string* run, std::string* run_
 
 // Adds the options for a running run: those of AddRunOption, --peer and --secure.
 void AddTargetOptions(CLI::App& command, TargetOptions* options);
-// The same for a command with further arguments besides the run: only --run names the run.
+// Like AddTargetOptions, for a command that has other arguments: only --run names the run.
 void AddNamedTargetOptions(CLI::App& command, TargetOptions* options);
 
 // Adds the options for a checkpoint: a run or a folder as the argument, --checkpoint and --run-dir.

@@ -9,23 +9,23 @@
 
 namespace shoal::launch {
 
-// Forks this process, which must not have threads yet. The child continues in a session of its own;
-// the parent waits until the child reports its start.
+// Forks this process, which must not have threads yet. The child continues in its own session; the
+// parent waits until the child reports its start.
 class Detachment {
  public:
-  // Returns in the child. Returns in the parent once the child has started or ended, or at the
-  // deadline, when the child continues. Until then the parent forwards SIGINT and SIGTERM to the
-  // child. Throws Error.
+  // Returns in the child at once. Returns in the parent after the child has started or ended, or at
+  // the deadline; the child continues after the deadline. While the parent waits, it forwards
+  // SIGINT and SIGTERM to the child. Throws Error.
   explicit Detachment(std::chrono::seconds deadline = kStartDeadline);
   Detachment(const Detachment&) = delete;
   Detachment& operator=(const Detachment&) = delete;
 
   bool IsChild() const { return child_ == 0; }
-  // Parent: 0 once the child has started, else its exit code; kInterruptedExit (stop.h) if a
-  // forwarded signal stopped it; 1 at the deadline.
+  // The result in the parent: 0 if the child has started, 1 at the deadline, else the child's exit
+  // code; kInterruptedExit (stop.h) if a forwarded signal stopped the child.
   int exit_code() const { return exit_code_; }
-  // Child: reports that it has started. From now on stdout and stderr are appended to `log`, stdin
-  // is empty, and the parent returns. Throws Error if the log cannot be opened.
+  // Call it in the child. Reports the start to the parent, which then returns. From now on stdout
+  // and stderr are appended to `log`, and stdin is empty. Throws Error if the log cannot be opened.
   void Started(const std::filesystem::path& log);
 
   // The start of a run may wait for processes of an earlier run, for hosts and for a large replay

@@ -8,9 +8,9 @@
 
 namespace shoal::launch {
 
-// Reads the output of a process after the byte `from`. Returns the last error or the last line that
-// is not in Shoal's log format; else the last warning; else an empty text. Date, time and name of a
-// log line are left out. At most the last 64 kB are read.
+// Reads the output of a process after the byte `from`, but at most the last 64 kB. Returns the last
+// line that is an error or is not in Shoal's log format. If there is no such line, returns the last
+// warning, or an empty text. Date, time and name of a log line are left out.
 std::string ExitReason(const std::filesystem::path& output, uintmax_t from);
 
 }  // namespace shoal::launch

@@ -14,16 +14,16 @@ struct RemoteHost {
   std::string name;                // unique; names the host in messages
   int actors = 1;                  // at least 1
   std::vector<std::string> ssh;    // command; a shell command line is added as its last word
-  std::filesystem::path programs;  // folder of shoal-actor there; absolute
-  std::filesystem::path folder;    // folder for run folders there; relative = to the login's
-  std::string interface = "auto";  // as transport.interface
-  bool shared = false;  // has this host's run folder under the same path: nothing is copied
-  std::filesystem::path secure;  // the actors' credentials there, once pushed; empty = as here
-  std::filesystem::path run;     // the run's folder there, once created
+  std::filesystem::path programs;  // folder of shoal-actor on the host; absolute
+  std::filesystem::path folder;    // folder for runs on the host; relative to the login folder
+  std::string interface = "auto";  // values as for transport.interface
+  bool shared = false;  // shares the run folder with this host, same path: nothing is copied
+  std::filesystem::path secure;  // folder of the actors' credentials on the host; empty = as here
+  std::filesystem::path run;     // the run's folder on the host; empty before it is created
 };
 
 struct Hosts {
-  std::string address;    // at which every host reaches coordinator, learner and replay
+  std::string address;    // address of this host, at which other hosts reach the run's servers
   std::string interface;  // of this host; empty = transport.interface
   int actors_here = -1;   // -1 = the value of the key `actors`
   std::vector<RemoteHost> hosts;
@@ -31,8 +31,8 @@ struct Hosts {
   int RemoteActors() const;
 };
 
-// Throws Error: an unknown, duplicate, missing, ill-typed or out-of-range key is a usage error that
-// names file and key.
+// Throws Error. An unknown, duplicate, missing, ill-typed or out-of-range key gives a usage error
+// that names file and key.
 Hosts ReadHostsFile(const std::filesystem::path& file);
 void WriteHostsFile(const std::filesystem::path& file, const Hosts& hosts);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The programs of a run, and the way in which each is started.
+// The programs of a run, and how each program is started.
 #pragma once
 
 #include <filesystem>
@@ -12,11 +12,12 @@
 
 namespace shoal::launch {
 
-// The folder of this program, which also has the other programs.
+// The folder of this program and of the other programs.
 std::filesystem::path ProgramFolder();
 
-// Describes the start of `program` of ProgramFolder() with arguments and the environment of every
-// Shoal program: `threads` threads for computation, no spinning OpenMP threads, no render threads.
+// Describes the start of `program` in ProgramFolder() with these arguments. The environment is that
+// of every Shoal program: `threads` threads for computation, no spinning OpenMP threads, no render
+// threads.
 ProcessSpec ProgramSpec(const std::string& program, std::vector<std::string> arguments,
                         int threads);
 
@@ -36,7 +37,7 @@ std::vector<ProcessSpec> PlanProcesses(const link::RunTopology& topology, const 
 // The actors of hosts[index].
 ActorRange ActorsOf(const Config& config, const std::vector<RemoteHost>& hosts, size_t index);
 
-// One training actor of this host, expendable.
+// Describes the start of training actor `id` on this host. The process is expendable.
 ProcessSpec ActorProcess(const Config& config, const std::filesystem::path& run, int id);
 
 }  // namespace shoal::launch

@@ -19,8 +19,8 @@ using StopQuestion = std::function<bool()>;
 // Words as one command line of a POSIX shell.
 std::string ShellLine(const std::vector<std::string>& words);
 
-// Runs shoal-actor --version there. Throws Error naming the host if the host is not reached, or if
-// the program is missing or has another version.
+// Runs shoal-actor --version on the host. Throws Error naming the host if the host cannot be
+// reached, or if the program is missing or has another version.
 void CheckHost(const RemoteHost& host, const StopQuestion& stop);
 
 // Actors `first` .. `first` + host.actors - 1 of a run.
@@ -29,19 +29,19 @@ struct ActorRange {
   bool Holds(uint32_t id) const { return int(id) >= first && int(id) < first + count; }
 };
 
-// Copies config.json, cluster.json, the DDS configuration of SHOAL_DDS_XML, the credentials of an
-// actor where the run is secured and the counter pages of these actors to host->run, which becomes
-// absolute. An existing page on the host is not overwritten. Does nothing for a host that shares
-// the run folder. Throws Error naming the host.
+// Copies the files that actors need to host->run, which becomes absolute: config.json,
+// cluster.json, the DDS configuration of SHOAL_DDS_XML, an actor's credentials if the run is
+// secured, and the sequence logs of these actors. A sequence log that exists on the host is not
+// overwritten. Does nothing for a host that shares the run folder. Throws Error naming the host.
 void PushRun(const std::filesystem::path& run, const ActorRange& actors, RemoteHost* host,
              const StopQuestion& stop);
 
-// Copies the counter pages of these actors from host.run to RUN/made. Throws Error naming the host.
+// Copies the sequence logs of these actors from host.run to RUN/made. Throws Error naming the host.
 void FetchSequenceLogs(const RemoteHost& host, const ActorRange& actors,
                        const std::filesystem::path& run, const StopQuestion& stop);
 
-// Training actor `id` on the host, as a child process here. The actor stops when its input is
-// closed.
+// Describes training actor `id` on the host as a child process of this process. The actor stops
+// when its input is closed.
 ProcessSpec RemoteActor(const RemoteHost& host, int id, const std::filesystem::path& run);
 
 }  // namespace shoal::launch

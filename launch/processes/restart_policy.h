@@ -12,7 +12,7 @@
 namespace shoal::launch {
 
 struct RestartLimits {
-  int restarts = 5;  // within `window`; one more death fails the run
+  int restarts = 5;  // allowed within `window`; one more death fails the run
   std::chrono::seconds window{60};
   std::chrono::milliseconds first_delay{200};  // doubles with each death within the window
   std::chrono::milliseconds longest_delay{5000};
@@ -22,7 +22,8 @@ class RestartPolicy {
  public:
   explicit RestartPolicy(const RestartLimits& limits) : limits_(limits) {}
 
-  // The process died at `now`. Returns the delay before the next start; empty if it died too often.
+  // The process died at `now`. Returns the delay before the next start; empty if the process died
+  // too often.
   std::optional<std::chrono::milliseconds> OnDeath(SteadyTime now);
 
  private:

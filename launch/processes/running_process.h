@@ -17,15 +17,15 @@ namespace shoal::launch {
 class RunningProcess {
  public:
   virtual ~RunningProcess() = default;
-  // The pid that its reports carry.
+  // The pid in the process's reports.
   virtual pid_t pid() const = 0;
-  // The exit status, once the process has ended; does not wait.
+  // The exit status if the process has ended, else empty; does not wait.
   virtual std::optional<ExitStatus> Poll() = 0;
-  // Does nothing once the process has ended.
+  // Does nothing if the process has ended.
   virtual void Signal(int signal) = 0;
 };
 
-// Throws Error when the process cannot be started.
+// Starts a process. Throws Error if the process cannot be started.
 using ProcessStarter = std::function<std::unique_ptr<RunningProcess>(const ProcessSpec&)>;
 
 // Starts a child process.

@@ -13,12 +13,13 @@ namespace shoal::launch {
 
 class ScratchFolder {
  public:
-  // Creates the folder in `parent`, after removing the folders of killed processes of this user.
-  // Throws Error naming the folder if it cannot be created.
+  // Removes the folders of this user's killed processes from `parent`, then creates the folder
+  // there. If the folder cannot be created, throws Error naming the folder.
   explicit ScratchFolder(
       const std::filesystem::path& parent = std::filesystem::temp_directory_path());
-  // RUN/.scratch.tmp-PID; a process may have one at a time. If its owner is killed, the folder is
-  // removed with the run's other unfinished files (run_leftovers.h). Throws Error.
+  // Creates RUN/.scratch.tmp-PID. A process may have one such folder at a time. If the process is
+  // killed, the folder is removed with the run's other unfinished files (run_leftovers.h). Throws
+  // Error.
   static ScratchFolder WithinRun(const std::filesystem::path& run);
   ~ScratchFolder();
   ScratchFolder(const ScratchFolder&) = delete;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Account of all records: compares the records that the actors made with those that the replay
-// handled.
+// Account of all records: compares the records that the actors made with the records that the
+// replay handled.
 //
 //   made = stored + lost_with_process + lost_with_replay + rejected + after_gap + discarded,
 //   exactly;
-//   duplicates and resends are counted apart. Sequences of a session are 1 .. made; the replay
-//   handled 1 .. highest of them.
+//   duplicates and resends are counted separately. Sequences of a session are 1 .. made; the replay
+//   handled the sequences 1 .. highest.
 //   - lost_with_process: records that never reached the replay because their actor died:
 //     made - highest.
 //   - lost_with_replay: records that were stored and then lost, because a replay server in memory
@@ -25,21 +25,21 @@
 
 namespace shoal::launch {
 
-// Count of one actor session, made by the actor (actor/sending/sequence_log.h).
+// Number of records of one actor session, counted by the actor (actor/sending/sequence_log.h).
 struct MadeRecords {
   uint32_t actor = 0;
   uint64_t session = 0;
   uint64_t made = 0;
-  bool known = true;  // false: the page was lost; `made` is the replay's count
+  bool known = true;  // false: the sequence log was lost; `made` is the replay's count
 };
 
 struct Accounting {
   uint64_t made = 0, stored = 0, lost_with_process = 0, lost_with_replay = 0;
   uint64_t rejected = 0, after_gap = 0, discarded = 0;
   uint64_t duplicates = 0, resends = 0;
-  // Sessions without a page: actors started by hand, actors on a host that cannot be reached, and
-  // lost pages. The records that the replay received count as made; the number of further records
-  // is unknown.
+  // Number of sessions without a sequence log (page): actors started by hand, actors on a host that
+  // cannot be reached, and lost files. The records that the replay received count as made; the
+  // number of further records is unknown.
   uint64_t sessions_without_page = 0;
   std::vector<std::string> faults;  // one line for each imbalance
 
@@ -51,12 +51,12 @@ struct Accounting {
 
 struct AccountTerms {
   uint64_t resends = 0;
-  uint32_t own_actors = 0;      // sessions of actors below must have a page
+  uint32_t own_actors = 0;      // sessions of actors below this number must have a sequence log
   bool outlives_replay = true;  // stored records are in a file
 };
 
-// `seen`: the replay's count, or the learner's count in a run without a replay. The counts of each
-// session add up (ReadAccount).
+// `seen`: the replay's count, or the learner's count in a run without a replay. ReadAccount has
+// checked that the counts of each session add up.
 Accounting Account(std::span<const MadeRecords> made, const RunAccount& seen,
                    const AccountTerms& terms);
 

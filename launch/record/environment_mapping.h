@@ -11,13 +11,14 @@
 
 namespace shoal::launch {
 
-// "[-8, 8]": from the lowest to the highest bound of the elements.
+// "[-8, 8]": the lowest and the highest bound of all elements.
 std::string BoundsText(const tasks::ArraySpace& space);
 
-// Text for people; each line has its newline. Both functions CHECK that the run's spec has an
+// The mapping as text for people; each line ends with a newline. CHECK: the run's spec has an
 // environment.
 std::string DescribeMapping(const RunConfig& run);
-// The same for programs, schema shoal-env-mapping-1.
+// The mapping as JSON for programs, schema shoal-env-mapping-1. CHECK: the run's spec has an
+// environment.
 nlohmann::ordered_json MappingJson(const RunConfig& run);
 
 }  // namespace shoal::launch

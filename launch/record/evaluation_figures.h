@@ -14,9 +14,9 @@ struct EvaluationFigures {
   double wall_seconds = 0;  // since the run's start
   std::string task{}, checkpoint{};
   size_t episodes = 0;
-  std::optional<double> success{};  // rate; empty if the task has none
+  std::optional<double> success{};  // rate; empty if the task has no success
   double return_mean = 0, return_std = 0;
-  std::optional<double> final_distance_mean{};  // m; empty if the task has none
+  std::optional<double> final_distance_mean{};  // m; empty if the task has no goals
 };
 
 // Throws Error unless the file is a shoal-eval-1 object.

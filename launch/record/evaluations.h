@@ -15,25 +15,26 @@
 
 namespace shoal::launch {
 
-// Reads the figures of a shoal-eval-1 object; `source` names the text. Throws Error for other text,
-// and for impossible figures: a success rate outside of 0..1, a return that is not finite, no
-// episodes.
+// Reads the results of a shoal-eval-1 object; `source` names the text in errors. Throws Error for
+// other text, and for impossible results: a success rate outside of 0..1, a return that is not
+// finite, no episodes.
 EvaluationPoint ParseEvaluation(const std::string& json, const std::string& source);
 
-// The figures of a message. Throws Error, also if the fields of the message differ from its JSON.
+// Reads the results of a message. Throws Error, also if the fields of the message differ from its
+// JSON.
 EvaluationPoint ParseEvaluation(const EvalMessage& message);
 
 // An evaluation in the form that a run stores.
 struct EvaluationRecord {
   EvaluationPoint point;
-  std::string name;  // in eval/: STEPS_UPDATES.json
+  std::string name;  // file name in eval/: STEPS_UPDATES.json
   std::string text;  // the message's JSON, with `wall_seconds` added
 };
 // Throws Error if the message is not an evaluation.
 EvaluationRecord RecordOf(const EvalMessage& message, double wall_seconds);
 
-// Writes evaluations into a run's folder. Files that cannot be written are kept in memory, up to
-// kMostKept of them, for Retry. One thread.
+// Writes evaluations into a run's folder. Evaluations that cannot be written are kept in memory for
+// Retry, at most the newest kMostKept. One thread.
 class EvaluationStore {
  public:
   // Borrows `faults`, which reports and counts failed writes under the name eval.

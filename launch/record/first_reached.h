@@ -10,9 +10,9 @@
 
 namespace shoal::launch {
 
-// The success of one evaluation.
+// The success rate of one evaluation.
 struct EvaluatedSuccess {
-  std::optional<double> rate{};  // 0..1; empty if the task has none: never reached
+  std::optional<double> rate{};  // 0..1; empty if the task has no success: never reached
   size_t episodes = 0;
 };
 
@@ -20,8 +20,8 @@ struct EvaluatedSuccess {
 // False without episodes.
 bool ReachTogether(std::span<const EvaluatedSuccess> evaluations, double target);
 
-// Index of the first evaluation of the first `in_a_row` (at least 1) that reach `target` together,
-// in the order of evaluation; empty = not reached.
+// Finds the first `in_a_row` (at least 1) consecutive evaluations that reach `target` together.
+// Returns the index of the first of these evaluations; empty = not reached.
 std::optional<size_t> FirstReached(std::span<const EvaluatedSuccess> evaluations, double target,
                                    size_t in_a_row);
 

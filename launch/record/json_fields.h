@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fields in files of runs that may be missing or null, or written by an older build.
+// Readers of fields that may be missing or null in a run's files, for example because an older
+// build wrote the file.
 #pragma once
 
 #include <nlohmann/json.hpp>

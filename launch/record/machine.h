@@ -8,13 +8,13 @@
 
 namespace shoal::launch {
 
-// {cpu, cores, memory_gb, isa, kernel}: cores: number that this process may use; isa: instruction
-// set that the network code uses.
+// {cpu, cores, memory_gb, isa, kernel}. cores: number of cores that this process may use; isa:
+// instruction set that the network code uses.
 nlohmann::ordered_json DescribeMachine();
 
-// Name of the first processor in the text of /proc/cpuinfo: "NAME (family F, model M)", because
-// virtual machines give different CPUs one name. Without the brackets if either number is missing;
-// "unknown" without a name.
+// Name of the first processor in the text of /proc/cpuinfo: "NAME (family F, model M)". The numbers
+// are needed because virtual machines give different CPUs the same name. If a number is missing,
+// the result is "NAME"; if the name is missing, "unknown".
 std::string CpuName(std::string_view cpuinfo);
 
 }  // namespace shoal::launch

@@ -10,7 +10,7 @@ namespace shoal::launch {
 
 struct RunSize {
   uint64_t total = 0;   // bytes on the disk; hard-linked files count once
-  uint64_t replay = 0;  // part of `total` in the replay's ring
+  uint64_t replay = 0;  // bytes of the replay's ring; included in `total`
 };
 // Files that cannot be read count as 0 bytes.
 RunSize SizeOfRun(const std::filesystem::path& run);

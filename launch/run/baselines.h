@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Baselines of a task: results of no-op actions and of uniform random actions, reported beside
-// every success rate. Measured once per task, threshold and model, then kept.
+// Baselines of a task: results of no-op actions and of uniform random actions, reported with every
+// success rate. Baselines are measured once per task, threshold and model, and then stored.
 #pragma once
 
 #include <cstdint>
@@ -19,9 +19,9 @@ struct Baselines {
   EvaluationFigures noop{}, random{};
 };
 
-// Whether two configurations have the same baselines: equal in task, environment of Python,
-// threshold, model file, physics, action repeat and whether episodes end on success. All other keys
-// concern the policy.
+// Whether two configurations have the same baselines: if task, environment of Python, threshold,
+// model file, physics, action repeat and end_on_success are equal. All other keys concern the
+// policy.
 bool ShareBaselines(const Config& a, const Config& b);
 
 // $XDG_CACHE_HOME/shoal/baselines, or ~/.cache/shoal/baselines; in /tmp if there is no home
@@ -38,14 +38,14 @@ class BaselineCache {
   explicit BaselineCache(std::filesystem::path folder = BaselineFolder(), int episodes = kEpisodes)
       : folder_(std::move(folder)), episodes_(episodes) {}
 
-  // Baselines of the configuration's task with its threshold, model file (its content), physics,
-  // action repeat and end of episodes, without pictures and randomization. Empty if the baselines
+  // Baselines of the configuration's task with its threshold, content of the model file, physics,
+  // action repeat and end_on_success, without pictures and randomization. Empty if the baselines
   // have not been measured, if the model file no longer exists, or if the configuration has no
   // baselines (HasBaselines).
   std::optional<Baselines> Find(const Config& config) const;
-  // The same; measures baselines that are not stored yet. Measuring plays whole episodes and takes
-  // from some seconds to a minute; `say` gets a line before. Empty if `stop` returned true. Throws
-  // Error. CHECK: HasBaselines.
+  // Like Find, but measures baselines that are not stored yet. A measurement plays whole episodes
+  // and takes some seconds to a minute; `say` gets a line before the measurement. Empty if `stop`
+  // returned true. Throws Error. CHECK: HasBaselines.
   std::optional<Baselines> Measure(const Config& config, const std::function<bool()>& stop,
                                    const std::function<void(const std::string&)>& say) const;
 

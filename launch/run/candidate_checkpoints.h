@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chooses the checkpoints that a run keeps after the learner has pruned its own: the checkpoints of
-// the evaluations that are the best or may become the best (best_evaluation.h). Pure.
+// Chooses the checkpoints that a run keeps after the learner has deleted its older checkpoints: the
+// checkpoints of the best evaluation and of evaluations that may become the best
+// (best_evaluation.h). Pure.
 #pragma once
 
 #include <functional>
@@ -14,22 +15,22 @@
 namespace shoal::launch {
 
 struct CheckpointChoice {
-  std::vector<std::string> names{};  // of the checkpoints to keep; may be empty
-  std::string best{};                // one of them
+  std::vector<std::string> names{};  // names of the checkpoints to keep; may be empty
+  std::string best{};                // one of `names`
   std::vector<std::string> lines{};  // for people
 };
 
 class CandidateCheckpoints {
  public:
   // `unwritten`: number of checkpoints that the learner could not write, from its last report.
-  // Returns a line when the learner begins to fail, and when it has written its checkpoints. `log`:
-  // the learner's log.
+  // Returns a line when the learner first fails to write, and when it has written all checkpoints.
+  // `log`: the learner's log.
   std::optional<std::string> OnUnwritten(double unwritten, const std::string& learner,
                                          const std::string& log);
 
-  // `candidates`: BestEvaluation::candidates(). `exists` says whether a checkpoint of that name was
-  // written. While the learner cannot write, missing checkpoints are not left out, because the
-  // learner will write them later. Returns nothing if an evaluation names no checkpoint.
+  // `candidates`: BestEvaluation::candidates(). `exists` returns whether a checkpoint of that name
+  // was written. While the learner cannot write, missing checkpoints are not left out, because the
+  // learner will write them later. Returns nothing if an evaluation has no checkpoint name.
   std::optional<CheckpointChoice> Choose(std::vector<EvaluationPoint> candidates,
                                          const std::function<bool(const std::string&)>& exists);
 

@@ -17,20 +17,20 @@ namespace shoal::launch {
 class CommandHandler {
  public:
   struct Effects {
-    std::function<bool()> running;             // false once the run is ending
-    std::function<uint64_t()> env_steps;       // of the run so far
+    std::function<bool()> running;             // false as soon as the run is ending
+    std::function<uint64_t()> env_steps;       // env steps of the run so far
     std::function<void()> stop;                // ends the run in order
     std::function<void(int, int)> scale;       // actors: from, to; may throw Error
     std::function<void(SettingChange)> note;   // records a change and sends it to the processes
-    std::function<void(const Config&)> check;  // of new settings on this machine; throws Error
+    std::function<void(const Config&)> check;  // checks new settings on this machine; throws Error
   };
 
   CommandHandler(LiveSettings& settings, Effects effects)
       : settings_(settings), effects_(std::move(effects)) {}
 
-  // "stop", "set KEY=VALUE...", "scale N". The reply contains the effect or the reason of a
-  // refusal. Either all of several assignments are made or none; key and values in the reply are
-  // those of the last one.
+  // Executes "stop", "set KEY=VALUE..." or "scale N". The reply contains the effect or the reason
+  // of a refusal. Either all assignments of a command are made or none. Key and values in the reply
+  // are those of the last assignment.
   ReplyMessage Handle(const CommandMessage& command);
 
  private:

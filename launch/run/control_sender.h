@@ -21,7 +21,7 @@ class ControlSender {
 
   RunState state() const { return order_.state; }
 
-  // A new order: the next Beat sends it.
+  // Sets a new order, which the next Beat sends.
   void Order(RunState state);
   void Order(const LiveSettings& settings);
 

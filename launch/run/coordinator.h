@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The coordinator of a run: starts its processes, restarts dead ones, receives their messages,
-// writes the run's record, shows its progress and stops the processes in order. The decisions are
-// in run_decisions.h.
+// The coordinator of a run: starts the run's processes, restarts dead processes, receives messages,
+// writes the run's files, shows the run's progress and stops the processes in order. The decisions
+// are in run_decisions.h.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,7 @@ namespace shoal::launch {
 
 struct RunResult {
   RunMeta meta;
-  bool clean = true;                // every process left by itself with code 0, or kUnwrittenExit
+  bool clean = true;                // every process exited by itself with code 0 or kUnwrittenExit
   std::string deaths;               // Supervisor::DescribeDeaths
   std::set<std::string> unwritten;  // files or processes with unwritten results
   Bottleneck bottleneck;
@@ -47,15 +47,16 @@ struct RunResult {
 class Coordinator {
  public:
   struct Parts {
-    std::filesystem::path run;      // the folder: holds config.json and cluster.json
+    std::filesystem::path run;      // the run's folder, with config.json and cluster.json
     const Config& config;           // content of config.json
-    const RunMeta& before;          // empty, or that of the resumed run
-    std::vector<RemoteHost> hosts;  // have a copy of the run (run_hosts.h)
+    const RunMeta& before;          // meta.json of the resumed run; initial values for a fresh run
+    std::vector<RemoteHost> hosts;  // other hosts, which have a copy of the run (run_hosts.h)
     link::Hub& hub;                 // of the role coordinator
     RunServer& server;
     Progress& progress;
     ProcessStarter start = StartChild;  // starts a process of the run
-    // Limits within which the run divides the cores by its measurements; empty: the numbers stay.
+    // Limits within which the run divides the cores by its measurements; empty: the numbers of
+    // actors and learner threads stay.
     std::optional<SplitLimits> split_limits = {};
   };
 
@@ -63,9 +64,9 @@ class Coordinator {
   explicit Coordinator(const Parts& parts);
 
   // Runs until the target, the budget, Ctrl-C, `shoal stop` or a failure. When the call returns, no
-  // process is left. Call on the thread that lives longest (child_process.h). Throws Error when a
-  // process cannot be started. `on_started` is called once, when every process has reported for the
-  // first time; may be null.
+  // process runs any more. Call on the thread that lives longest (child_process.h). Throws Error if
+  // a process cannot be started. `on_started` is called once, when every process has reported for
+  // the first time; may be null.
   RunResult Run(const std::function<void()>& on_started);
 
  private:
@@ -95,21 +96,21 @@ class Coordinator {
 
   void Say(const std::optional<std::string>& line);
 
-  // Seconds of the run, without pauses; earlier sessions included.
+  // Seconds of the run without pauses, with earlier sessions.
   double Elapsed() const;
   RunResources Resources() const;
   ProgressFigures Figures(SteadyTime now) const;
-  // Episodes of the whole run that ended at a number that is not finite, by cause.
+  // Number of the whole run's episodes that ended because of a number that is not finite, by cause.
   std::map<std::string, uint64_t> FaultyEpisodes() const;
-  // meta.json as of now.
+  // The present content for meta.json.
   RunMeta Meta() const;
 
   const std::filesystem::path run_;
-  const Config config_;  // as the run was started
+  const Config config_;  // at the start of the run
   const std::vector<RemoteHost> hosts_;
   RunServer& server_;
   Progress& progress_;
-  RunMeta before_;  // the earlier sessions, and the changes of this one
+  RunMeta before_;  // values of the earlier sessions, and the changes of this session
   LiveSettings settings_;
   const link::RunTopology topology_;  // at the start; `shoal scale` may change the actors
   CommandHandler handler_;
@@ -122,7 +123,7 @@ class Coordinator {
   ControlSender control_;
   RunInbox inbox_;
 
-  const SteadyTime start_;  // by AwakeNow()
+  const SteadyTime start_;  // of the clock AwakeNow()
   const int usable_cores_;
   std::optional<SteadyTime> meta_written_;
   bool meta_due_ = false;  // an event for meta.json has happened

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chooses the received evaluations that a run counts: valid ones of parameters that the learner
-// handed out, each once. Other evaluations are refused or left out, counted and reported. No
-// message can end the run. Pure.
+// Selects the received evaluations that a run counts: valid evaluations of parameters that the
+// learner sent for evaluation, each once. Other evaluations are refused or left out, counted and
+// reported. No message can end the run. Pure.
 #pragma once
 
 #include <chrono>
@@ -21,20 +21,20 @@ namespace shoal::launch {
 
 class EvaluationIntake {
  public:
-  // `episodes` of each evaluation. Borrows `progress`. `say` gets a line about refusals, at most
-  // once per kSayPeriod.
+  // `episodes`: number of episodes of each evaluation. Borrows `progress`. `say` gets a line about
+  // refusals, at most once per kSayPeriod.
   EvaluationIntake(int episodes, const RunProgress& progress,
                    std::function<void(const std::string&)> say);
 
   // Marks an evaluation that an earlier session of the run has counted.
   void Recall(const EvaluationPoint& point) { filter_.Accept(point); }
 
-  // Takes the messages received since the last call and returns those that count, in order of
-  // arrival. An evaluation may arrive before the learner's message that announces it: the
-  // evaluation waits for up to kWait.
+  // Takes the messages received since the last call and returns the messages that count, in order
+  // of arrival. If an evaluation arrives before the learner's message that announces this
+  // evaluation, the evaluation waits for up to kWait.
   std::vector<EvalMessage> Take(std::vector<EvalMessage> messages, SteadyTime now);
 
-  // The run is over: refuses the evaluations that still wait.
+  // Call at the end of the run. Refuses the evaluations that still wait.
   void End(SteadyTime now);
 
   uint64_t refused() const { return refused_; }
@@ -50,7 +50,7 @@ class EvaluationIntake {
     SteadyTime arrived;
   };
 
-  // Figures of the message. Throws Error if the figures are impossible.
+  // Results in the message. Throws Error if the results are impossible.
   EvaluationPoint Figures(const EvalMessage& message) const;
   void Refuse(const std::string& why, SteadyTime now);
 

@@ -10,14 +10,14 @@
 
 namespace shoal::launch {
 
-// Looks at the newest kWindow evaluations. A figure has risen when its mean over the newer half
-// exceeds that over the older half by more than two standard errors of their difference. A run is
-// flat if neither its return nor its success (if the task has one) has risen, and its newest
-// success is below the target.
+// Examines the newest kWindow evaluations. A value has risen if its mean over the newer half
+// exceeds its mean over the older half by more than two standard errors of the difference. A run is
+// flat if neither return nor success (if the task has success) has risen, and the newest success is
+// below the target.
 class FlatScore {
  public:
-  // Call in the order of evaluation. `target`: StopRule::target(). Returns one line with the
-  // figures the first time that the run is flat, and nothing later.
+  // Call in the order of evaluation. `target`: StopRule::target(). Returns one line with the values
+  // when the run is flat for the first time, and nothing later.
   std::optional<std::string> OnEvaluation(const EvaluationPoint& point, double target);
 
   static constexpr size_t kWindow = 10;

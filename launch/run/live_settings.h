@@ -24,7 +24,7 @@ struct LiveKey {
   std::span<const SettingUse> uses;
 };
 
-// Every key that may be changed; `actors` by `shoal scale` alone.
+// All keys that may be changed. Only `shoal scale` changes `actors`.
 std::span<const LiveKey> LiveKeys();
 // "env_steps, eval.interval, ...", for messages and help.
 std::string LiveKeyNames();
@@ -34,13 +34,13 @@ class LiveSettings {
   // `config`: the run's config.json. In lockstep no key may be changed.
   explicit LiveSettings(const Config& config) : config_(config) {}
 
-  // Assigns "KEY=VALUE". Returns the key, its old and its new value; the old value of a schedule is
-  // the one at `env_steps`, the run's steps so far. Throws Error (kUsage), and changes nothing, if
-  // the key does not exist or is fixed for the run, if the value is out of range or a schedule
-  // (ControlMessage carries numbers only), and in lockstep.
+  // Assigns "KEY=VALUE". Returns the key, its old and its new value. `env_steps`: the run's steps
+  // so far; the old value of a schedule is its value at this step. Throws Error (kUsage), and
+  // changes nothing, in lockstep, if the key does not exist or is fixed for the run, or if the
+  // value is out of range or is a schedule (ControlMessage contains only numbers).
   SettingChange Assign(const std::string& assignment, uint64_t env_steps);
   SettingChange SetActors(const std::string& count);
-  // Repeats the changes made before the run was interrupted.
+  // Applies again the changes that were made before the run was interrupted.
   void Restore(std::span<const SettingChange> changes);
 
   // The run's configuration with the present values.

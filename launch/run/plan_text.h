@@ -8,10 +8,10 @@
 
 namespace shoal::launch {
 
-// Lines, each with its newline: pictures and the cost of drawing them; memory of the replay or
-// length of rollouts; updates per env step; arithmetic, encoder and work of an update; privileged
-// inputs of learning; the object's position as an input of the policy. Throws Error if the CPU
-// lacks the requested precision.
+// Lines, each ending with a newline: pictures and the cost of drawing; memory of the replay or
+// length of rollouts; updates per env step; precision, encoder and operations of an update;
+// privileged inputs of learning; a note if the policy gets the object's position. Throws Error if
+// the CPU lacks the requested precision.
 std::string PlanText(const RunConfig& run, double frame_microseconds);
 
 // One sentence if more actors than cores share this machine; else empty.

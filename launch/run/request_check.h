@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The checks of a run before its folder is created and its processes are started. Each check
-// refuses, with one line, an error that a process of the run would otherwise find later.
+// The checks of a run before its folder is created and its processes are started. Each check finds
+// an error that a process of the run would otherwise find later, and refuses the run with one line.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace shoal::launch {
 
-// Throws Error if this process may open only few files: the DDS library would fail without a
-// reason.
+// Throws Error if this process may open only few files, because the DDS library would fail without
+// giving the reason.
 void CheckOpenFiles();
 
 // Checks the network, the initial weights of a fresh run (read into the request), the replay's

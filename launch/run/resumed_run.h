@@ -12,16 +12,16 @@
 
 namespace shoal::launch {
 
-// Locks and examines the run's folder, and prints missing and rebuilt files. With
-// --print-config only the configuration and the hosts are resolved; with --dry-run nothing is
-// repaired. `describe` returns the observations of the actors' task; simulations have no task.
-// Throws Error.
+// Locks and examines the run's folder, and prints missing and rebuilt files. With --print-config
+// only the configuration and the hosts are resolved; with --dry-run no file is repaired. `describe`
+// returns the observations of the actors' task; simulation tests replace this function. Throws
+// Error.
 RunRequest ResolveResumed(
     const TrainOptions& options,
     const std::function<ObservedWorld(const Config&)>& describe = DescribeObservations);
 
-// The folder of credentials of the run's earlier sessions; empty if they were not secured. Throws
-// Error (usage) on a damaged file.
+// The folder of credentials of the run's earlier sessions; empty if the run was not secured. Throws
+// Error (usage) if a file is damaged.
 std::string FormerSecurity(const std::filesystem::path& run);
 
 }  // namespace shoal::launch

@@ -11,8 +11,9 @@
 
 namespace shoal::launch {
 
-// The account of a run whose processes have left, from the files in its folder. Empty if no record
-// was ever made. Throws Error if a file cannot be read.
+// Account of records (launch/record/accounting.h) of a run whose processes have exited, computed
+// from the files in its folder. Empty if no record was ever made. Throws Error if a file cannot be
+// read.
 std::optional<Accounting> AccountRun(const std::filesystem::path& run, const Config& config,
                                      const link::RunTopology& topology, uint64_t resends);
 

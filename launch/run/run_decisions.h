@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The decisions of a run: whether it has started, when and why it ends, when its processes may
-// stop, and which lines are due. Pure: figures, commands and times in, decisions out.
+// stop, and the lines to print. Pure: the caller supplies progress, commands and times.
 #pragma once
 
 #include <cstdint>
@@ -29,62 +29,64 @@ const char* ToString(RunEnd end);
 
 class RunDecisions {
  public:
-  // `config` has the live values. `before`: the counts of the run's earlier sessions.
+  // `config`: configuration with the present values. `before`: the counts of the run's earlier
+  // sessions.
   RunDecisions(const Config& config, link::RunTopology topology, const RunMeta& before,
                SteadyTime start);
 
-  // ---- Events. A returned line is for people; print each once.
+  // ---- Events. A returned line is for people; the caller prints the line.
 
-  // New values of live keys.
+  // Keys have new values (live_settings.h).
   void Change(const Config& config);
   void OnStopCommand() { stop_commanded_ = true; }
-  // The run cannot continue. Only the first reason counts.
+  // Marks the run as failed. Only the first reason is kept.
   std::optional<std::string> Fail(const std::string& why);
-  // Progress of a replay, of the learner.
+  // A progress message of a replay or of the learner has arrived.
   std::optional<std::string> OnReplay(const ReplayProgress& progress);
   void OnLearner(const LearnerProgress& progress) { progress_.OnLearner(progress); }
   void OnLearnerDeath() { progress_.OnLearnerDeath(); }
-  // The training actors and the evaluation actor now. Call several times a second
-  // (liveness_timer.h).
+  // Gets the present state of the training actors and of the evaluation actor. Call several times a
+  // second (liveness_timer.h).
   std::optional<std::string> OnStandings(const RoleStanding& actors, const RoleStanding& evaluation,
                                          SteadyTime now);
-  // An evaluation that an earlier session of the run counted.
+  // An earlier session of the run has counted this evaluation.
   void Recall(const EvaluationPoint& point) { Count(point); }
   struct Verdict {
-    bool best = false;                   // of the evaluations so far
-    std::optional<std::string> warning;  // the score has stopped improving
+    bool best = false;                   // the evaluation is the best so far
+    std::optional<std::string> warning;  // a line if the results have stopped improving
   };
-  // An evaluation of this session, in the order of arrival.
+  // An evaluation of this session has arrived. Call in the order of arrival.
   Verdict OnEvaluation(const EvaluationPoint& point);
-  // Begins the run's end. From now on a dead process does not fail the run.
+  // Begins the run's end. From now on the death of a process does not fail the run.
   std::optional<std::string> BeginEnd(RunEnd end);
-  // All processes have ended. The run has failed if its learner died after the budget was used up
-  // and lost env steps.
+  // Call when all processes have ended. The run has failed if its learner died after the budget was
+  // used up and env steps were lost.
   std::optional<std::string> OnEnded();
 
   // ---- Decisions
 
-  // Whether every process of the run has reported. A process that was retired, or that is dead
-  // while other actors work, does not count.
+  // Whether every process of the run has reported. Retired processes, and dead actors while other
+  // actors work, need not have reported.
   bool Started(const std::function<bool(const ProcessName&)>& has_reported) const;
-  // Whether live keys may still change.
+  // Whether keys may still be changed (live_settings.h).
   bool TakesCommands() const { return !end_ && !stop_commanded_; }
-  // Why the run must end now; empty while the run continues. `interrupted`: a stop signal arrived.
+  // Reason why the run must end now; empty while the run continues. `interrupted`: a stop signal
+  // arrived.
   std::optional<RunEnd> MustEnd(bool interrupted) const;
   // Whether the actors can store their remaining records: with a replay, only while a replay server
   // runs.
   bool CanDrain(int running_replays) const;
-  // Whether the learner may stop, once the actors have left. If the budget ended the run, the
-  // learner first makes the updates that the stored steps allow, and the last evaluation arrives.
-  // In lockstep the same applies if the target ended the run, because the run must end the same way
-  // each time.
+  // Whether the learner may stop after the actors have exited. If the budget ended the run, the
+  // learner must first make the updates that the stored steps allow, and the last evaluation must
+  // have arrived. In lockstep the same applies if the target ended the run, because a lockstep run
+  // must always end the same way.
   bool Settled() const;
-  // The argument of BeginEnd; empty before.
+  // The argument of BeginEnd; empty before BeginEnd.
   std::optional<RunEnd> end() const { return end_; }
-  // The end for the record: a failure after BeginEnd counts as well.
+  // The end for meta.json: also kFailed if the run failed after BeginEnd.
   RunEnd FinalEnd() const;
 
-  // ---- The run so far, earlier sessions included
+  // ---- The run so far, with earlier sessions
 
   const RunProgress& progress() const { return progress_; }
   uint64_t env_steps() const;
@@ -97,9 +99,9 @@ class RunDecisions {
   // Evaluations whose checkpoints are kept (best_evaluation.h).
   const std::vector<EvaluationPoint>& candidates() const { return bests_.candidates(); }
 
-  // Training actors that are not down after a death.
+  // Number of training actors that are not down after a death.
   int ActorsWorking() const;
-  // One line about actors that do not work; empty when all work.
+  // One line about actors that do not work; empty if all work.
   std::string Trouble() const { return DescribeTrouble(actors_, evaluation_actor_); }
 
  private:
@@ -114,7 +116,7 @@ class RunDecisions {
   FlatScore flat_;
   std::optional<EvaluationPoint> last_evaluation_;
   WorkingActors working_actors_;
-  RoleStanding actors_, evaluation_actor_;  // at the last look
+  RoleStanding actors_, evaluation_actor_;  // of the last OnStandings
   bool stop_commanded_ = false;
   bool evaluated_ = false;  // an evaluation of this session arrived
   std::string error_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The messages of a run's processes to its coordinator, held until the coordinator's loop takes
+// Holds the messages of a run's processes to the coordinator until the coordinator's loop takes
 // them.
 #pragma once
 
@@ -17,13 +17,13 @@
 namespace shoal::launch {
 
 // Messages arrive on threads of the hub; one thread takes them. Messages of processes that are not
-// in the run's topology are refused and counted. Members are in construction order: readers end
-// before the inboxes that they fill.
+// in the run's topology are refused and counted. The order of the members makes readers end before
+// the inboxes that they fill.
 class RunInbox {
  public:
   RunInbox(link::Hub& hub, const link::RunTopology& topology);
 
-  // Each returns the messages that arrived since its last call.
+  // Each of these functions returns the messages that arrived since its last call.
   std::vector<MetricsMessage> TakeReports() { return reports_.TakeAll(); }
   std::vector<EvalMessage> TakeEvaluations() { return evaluations_.TakeAll(); }
   std::vector<ReplayProgress> TakeReplayProgress() { return replay_words_.TakeAll(); }
@@ -35,7 +35,7 @@ class RunInbox {
   uint64_t refused() const { return refused_; }
 
  private:
-  // The callback of the topic's reader.
+  // Makes the callback of the reader of messages M.
   template <class M>
   std::function<void(const M&)> HoldReports();
 

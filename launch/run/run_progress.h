@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The progress of a run, from the typed messages of replay and learner, and the list of requested
-// evaluations. Budget, draining and end are decided by this progress; reports (MetricsMessage) are
-// for display and files only. Pure.
+// evaluations. This progress decides budget, drain and end of the run. Reports (MetricsMessage) are
+// only for display and files. Pure.
 #pragma once
 
 #include <cstdint>
@@ -17,27 +17,27 @@ namespace shoal::launch {
 
 class RunProgress {
  public:
-  // The newest session of each replay, and of the learner, counts; a late message of an earlier
-  // session changes nothing. OnReplay returns whether a new replay began without its predecessor's
-  // records.
+  // Only messages of the newest session of a replay, or of the learner, count; a late message of an
+  // earlier session changes nothing. OnReplay returns whether a new replay began without its
+  // predecessor's records.
   bool OnReplay(const ReplayProgress& progress);
   void OnLearner(const LearnerProgress& progress);
-  // The learner has died. In a run without a replay, the successor continues from a checkpoint with
-  // fewer env steps.
+  // Call when the learner has died. In a run without a replay, the next learner continues from a
+  // checkpoint with fewer env steps.
   void OnLearnerDeath() { died_ = learner_.session; }
 
-  // Sum over all replays; in a run without one, the learner's count. 0 before the first report.
-  // Never falls, although a replay that lost its memory may report fewer steps than its predecessor
-  // (about one second's).
+  // Number of stored steps: the sum over all replays; in a run without a replay, the learner's
+  // count. 0 before the first report. The number never falls, although a replay that lost its
+  // memory may report fewer steps than its predecessor (about one second of steps).
   uint64_t stored_steps() const;
   std::optional<uint64_t> updates() const;
   // Whether the learner that reported last is alive.
   bool learner_lives() const { return learner_.session > died_; }
   // Whether the learner has made all updates that the stored steps allow.
   bool drained() const { return learner_.drained; }
-  // Update count of the parameters that the learner last handed out for evaluation; 0 = none yet.
+  // Update count of the parameters that the learner last sent for evaluation; 0 = none yet.
   uint64_t evaluation_due() const;
-  // Whether the learner has handed out these parameters for evaluation.
+  // Whether the learner has sent the parameters of this evaluation for evaluation.
   bool AskedFor(const EvaluationPoint& point) const;
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The files that a coordinator writes during a run: meta.json, evaluations, TensorBoard events, and
-// the checkpoints kept beyond the learner's pruning. A file that cannot be written is reported once
-// and tried again.
+// the checkpoints that are kept after the learner has deleted its own. A file that cannot be
+// written is reported once and tried again.
 #pragma once
 
 #include <filesystem>
@@ -29,14 +29,14 @@ class RunRecord {
   WriteFaults& faults() { return faults_; }
   ScalarLog& scalars() { return scalars_; }
 
-  // Adds `updates_lost`.
+  // Writes meta.json with `updates_lost` added.
   void WriteMeta(RunMeta meta);
   void WriteEvaluation(EvaluationRecord record) { evaluations_.Write(std::move(record)); }
   void FlushScalars();
 
   // `unwritten`: number of checkpoints that the learner could not write.
   void OnUnwrittenCheckpoints(double unwritten, const std::string& learner);
-  // Keeps the checkpoints of these evaluations and removes the other kept ones.
+  // Keeps the checkpoints of these evaluations and removes the other kept checkpoints.
   void KeepCheckpointsOf(const std::vector<EvaluationPoint>& candidates);
 
   // Tries again to write the files that could not be written.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A run that `shoal train` is about to start. A fresh run and a resumed run fill this value in
-// different ways; training_run.cpp checks and starts both in the same way.
+// different ways; training_run.cpp checks and starts both kinds in the same way.
 #pragma once
 
 #include <filesystem>
@@ -25,10 +25,10 @@ struct RunRequest {
   // last (TakeFolder), so that a refused run leaves no folder.
   std::optional<RunFolder> folder{};
   double frame_microseconds = 0;              // time to draw a frame, all cameras
-  std::optional<SplitLimits> split_limits{};  // limits for dividing the cores again
+  std::optional<SplitLimits> split_limits{};  // for later divisions of the cores (core_split.h)
   std::string camera_note{};                  // one line; empty unless the task chose the cameras
   std::string environment_note{};             // one line; empty unless env.id names an environment
-  nn::TensorMap initial_weights{};  // --init-from, by Shoal's names; empty without the option
+  nn::TensorMap initial_weights{};  // of --init-from, by Shoal's names; empty without the option
 
   bool resumed() const { return folder.has_value(); }
 };
@@ -36,14 +36,14 @@ struct RunRequest {
 // Resolves a fresh run. With --print-config only the configuration is resolved. Throws Error.
 RunRequest ResolveFresh(const TrainOptions& options);
 
-// Returns the run's folder, which holds the initial weights: creates the folder of a fresh run, or
-// moves that of a resumed run out of the request. Completes `request->config` and `request->meta`.
-// Throws Error.
+// Returns the run's folder: creates the folder of a fresh run and writes the initial weights, or
+// moves the folder of a resumed run out of the request. Completes `request->config` and
+// `request->meta`. Throws Error.
 RunFolder TakeFolder(const TrainOptions& options, RunRequest* request);
 
-// Waits until the processes of an earlier session have left the run. After their coordinator was
-// killed, they write into its folder until they notice. Prints the processes that it waits for.
-// Throws Error.
+// Waits until the processes of an earlier session have exited, because processes whose coordinator
+// was killed write into the folder for some time. Prints the processes for which the function
+// waits. Throws Error.
 void WaitUntilUnused(const std::filesystem::path& run);
 
 }  // namespace shoal::launch

@@ -17,10 +17,10 @@
 
 namespace shoal::launch {
 
-// Lives from the run's start until after its last evaluation. One thread.
+// Exists from the run's start until after the run's last evaluation. One thread.
 class RunServer {
  public:
-  // Borrows the coordinator's hub. `on_view` gets every view that is shown; may be null.
+  // Borrows the coordinator's hub. `on_view` gets every published view; may be null.
   RunServer(link::Hub& hub, const std::string& run,
             std::function<void(const RunViewMessage&)> on_view = nullptr);
   // Waits a moment so that watchers receive the last view.
@@ -33,15 +33,15 @@ class RunServer {
 
   // Whether the next view is due.
   bool Due(SteadyTime now) const { return !shown_ || now - *shown_ >= kPeriod; }
-  // Shows `view`, with name, time and events filled in.
+  // Publishes `view`, with name, time and events filled in.
   void Show(RunViewMessage view, SteadyTime now);
-  // Publishes the coordinator's figures of the last view again, when due, in another state. Call
-  // when no other process is left.
+  // Publishes the coordinator's metrics of the last view again, with another state, if a view is
+  // due. Call after all other processes have exited.
   void ShowAgain(const std::string& state, SteadyTime now);
-  // The last view: state "ended", with the coordinator's figure `exit_code`.
+  // Publishes the last view: state "ended", with the coordinator's metric `exit_code`.
   void ShowEnd(int exit_code);
 
-  // Returns the received commands, each once. A repeated command gets its former reply again.
+  // Returns the received commands, each once. A repeated command gets the earlier reply again.
   std::vector<CommandMessage> TakeCommands();
   void Answer(const ReplyMessage& reply);
 
@@ -51,7 +51,7 @@ class RunServer {
   static constexpr size_t kCommands = 100;
 
  private:
-  // Removes the reports of all other processes, which have left.
+  // Removes the reports of all other processes, which have exited.
   void OnlyCoordinator(const std::string& state);
   void Publish(SteadyTime now);
 
@@ -62,9 +62,9 @@ class RunServer {
   uint64_t last_event_ = 0;
   RunViewMessage view_;
   std::optional<SteadyTime> shown_;
-  std::deque<ReplyMessage> answered_;  // newest last, one per client
+  std::deque<ReplyMessage> answered_;  // last reply to each client, the newest at the end
   MessageInbox<CommandMessage> inbox_{kCommands};
-  link::Reader<CommandMessage> commands_;  // last: its callback uses the inbox
+  link::Reader<CommandMessage> commands_;  // the last member, because its callback uses the inbox
 };
 
 }  // namespace shoal::launch

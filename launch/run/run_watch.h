@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Collects the reports of a run's processes: the newest of each, recent rates, the lines of
-// metrics.jsonl and the figures of the display. The coordinator's own report is made here and
-// treated like the others.
+// Collects the reports of a run's processes: the newest report of each process, recent rates, the
+// lines of metrics.jsonl and the metrics of the display. Also makes the coordinator's own report
+// and treats it like the other reports.
 #pragma once
 
 #include <filesystem>
@@ -39,14 +39,14 @@ class RunWatch {
   // Samples the run for the recent rates. Call it once a second; `seconds` and `env_steps` count
   // from the run's start.
   void LookBack(double seconds, uint64_t env_steps, const RunResources& resources);
-  // Forgets the recent rates after a pause, `seconds` after the run's start.
+  // Drops the recent rates after a pause. `seconds`: time since the run's start.
   void Forget(double seconds) { recent_.Forget(seconds); }
 
-  // Figures of the processes' reports.
+  // Metrics from the processes' reports, for the display.
   ProgressFigures Reported(SteadyTime now) const { return CollectFigures(view_, now); }
   // Adds the recent rates. `figures` must have steps and budget already.
   void AddLately(ProgressFigures* figures) const { launch::AddLately(recent_, lately_, figures); }
-  // Makes the coordinator's own report of `figures`, and returns the reports of all.
+  // Makes the coordinator's own report from `figures`, and returns the reports of all processes.
   std::vector<MetricsMessage> Reports(const ProgressFigures& figures, const Config& config,
                                       const RunResources& resources,
                                       const CoordinatorCounts& counts, SteadyTime now);

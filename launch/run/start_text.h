@@ -10,7 +10,7 @@
 
 namespace shoal::launch {
 
-// Each line has its newline. `address` is already reserved. Throws Error if the CPU lacks the
+// Each line ends with a newline. `address` is already reserved. Throws Error if the CPU lacks the
 // requested precision.
 std::string StartText(const RunRequest& request, const std::filesystem::path& run,
                       const ClusterAddress& address);

@@ -18,19 +18,19 @@ class StopRule {
 
   // Call in the order of evaluation.
   void OnEvaluation(const EvaluationPoint& point);
-  // Uses the new env_steps and stop.* from now on, for earlier evaluations as well.
+  // Uses the new values of env_steps and stop.* from now on, also for earlier evaluations.
   void Change(const Config& config);
 
   // Whether the pooled episodes of the newest stop.evaluations evaluations reached stop.success.
-  // The error rate of this test is in docs/algorithm.md ("When a run stops"). Always false for a
-  // task without success, whose runs end by their budget.
+  // For the error rate of this test see docs/algorithm.md ("When a run stops"). Always false for a
+  // task without success; its runs end by the budget.
   bool TargetReached() const;
   bool BudgetSpent(uint64_t env_steps) const;
 
-  // The target of first_success(): stop.success, or 0.98 if that is not set.
+  // The target of first_success(): stop.success, or 0.98 if stop.success is not set.
   double target() const { return target_; }
-  // The first of the first stop.evaluations consecutive evaluations whose pooled episodes reached
-  // target() (first_reached.h).
+  // First evaluation of the first series of stop.evaluations consecutive evaluations whose pooled
+  // episodes reached target() (first_reached.h).
   const std::optional<EvaluationPoint>& first_success() const { return first_success_; }
 
  private:
@@ -41,7 +41,7 @@ class StopRule {
   uint64_t budget_;
   double target_;
   std::vector<EvaluationPoint> points_;
-  std::vector<EvaluatedSuccess> successes_;  // success of each of points_
+  std::vector<EvaluatedSuccess> successes_;  // success of each element of points_
   std::optional<EvaluationPoint> first_success_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One sentence about where a run's time goes and, if there is one, the change that would make it
-// faster. Pure.
+// One sentence about the use of a run's time and, if there is one, about a change that would make
+// the run faster. Pure.
 #pragma once
 
 #include <string>
@@ -10,12 +10,12 @@
 namespace shoal::launch {
 
 // Returns an empty text until the learner has worked and kLeastSeconds have been measured, because
-// the first shares of a run do not predict later ones.
+// the first shares of a run do not predict later shares.
 //
-// A change is named only if the programs accept it: no more actors or learner threads than the host
-// has cores, no command that a run on several hosts refuses. Keys that the preset chooses on
-// purpose (replay.samples_per_insert, learner.batch, ppo.epochs) are never among the changes,
-// because these keys change the result of learning.
+// The sentence names a change only if the programs accept the change: no more actors or learner
+// threads than the host has cores, no command that a run on several hosts refuses. Keys that change
+// the result of learning (replay.samples_per_insert, learner.batch, ppo.epochs) are never among the
+// changes.
 std::string Advise(const Bottleneck& figures, const RunResources& resources);
 
 inline constexpr double kLeastSeconds = 10;

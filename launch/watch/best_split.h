@@ -6,9 +6,9 @@
 //   pace(A, N) = min(A / a, u(N) / p)         env steps/s
 //   N + pace (a + s) <= cores
 //
-// a: seconds of one actor per env step; c: seconds of one thread per update; w: share of c that
-// each further thread adds; p: updates per env step; s: core seconds of replay server and
-// evaluation per env step.
+// A: actors; N: learner threads; a: seconds of one actor per env step; c: seconds of one thread per
+// update; w: share of c that each further thread adds; p: updates per env step; s: core seconds of
+// replay server and evaluation actor per env step.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,7 @@
 namespace shoal::launch {
 
 struct Split {
-  int actors = 0, threads = 0;  // of the learner
+  int actors = 0, threads = 0;  // threads: of the learner
   bool operator==(const Split&) const = default;
 };
 
@@ -26,13 +26,13 @@ struct CoreCosts {
   double servers = 0;
   double further_thread = kFurtherThread;
 
-  // Measured with 8 threads (docs/performance.md, "Threads of the learner").
+  // Value measured with 8 threads (docs/performance.md, "Threads of the learner").
   static constexpr double kFurtherThread = 0.03;
 };
 
 struct SplitLimits {
   int cores = 1;
-  int most_threads = 1;             // threads that have rows of a batch
+  int most_threads = 1;             // largest number of threads that each get rows of a batch
   std::optional<int> actors = {};   // if given, the number is fixed
   std::optional<int> threads = {};  // if given, the number is fixed
 };
@@ -40,10 +40,10 @@ struct SplitLimits {
 double UpdatesPerSecond(const CoreCosts& costs, int threads);
 // Env steps/s.
 double PaceOf(const CoreCosts& costs, const Split& split);
-// Returns the fastest division in which each learner thread has a core of its own. Each further
-// thread must multiply the pace by kWorth. The number of actors is limited to kHeadroom times the
-// number that keeps the learner busy. If there are too few cores, the result is one thread and one
-// actor, unless their numbers are given.
+// Returns the fastest division in which each learner thread has its own core. A further thread is
+// used only if it multiplies the pace by at least kWorth. There are at most kHeadroom times as many
+// actors as keep the learner busy. If there are too few cores, the result is one thread and one
+// actor, unless these numbers are given.
 Split BestSplit(const CoreCosts& costs, const SplitLimits& limits);
 
 inline constexpr double kWorth = 1.01, kHeadroom = 1.15;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Use of a run's time: per role the share of each stage, the side that the limiter held back, and
-// one sentence of advice. Pure.
+// Use of a run's time: the share of each stage for each role, the side that the limiter held back,
+// and one sentence of advice. Pure.
 #pragma once
 
 #include <filesystem>
@@ -21,7 +21,7 @@ struct StageShare {
 };
 
 struct ProcessTimes {
-  std::string role;  // all processes of the role together
+  std::string role;  // the times are those of all processes of the role together
   int processes = 0;
   double seconds = 0;                // run time, summed over processes
   double cores = 0;                  // processors used on average, summed over processes
@@ -31,8 +31,8 @@ struct ProcessTimes {
 struct Bottleneck {
   double seconds = 0;          // length of the measured interval
   double inserts_blocked = 0;  // share of time in which the limiter held actors back
-  double samples_blocked = 0;  // the same for the learner
-  bool limited = true;         // the run has a replay, and so a limiter
+  double samples_blocked = 0;  // share of time in which the limiter held the learner back
+  bool limited = true;         // the run has a replay, and therefore a limiter
   std::vector<ProcessTimes> roles{};
   double cores = 0;      // processors used by all processes
   double usable = 0;     // processors available
@@ -43,13 +43,13 @@ struct Bottleneck {
 struct RunResources {
   double usable_cores = 0;        // of the coordinator's host
   int actors = 0;                 // requested number
-  bool actors_elsewhere = false;  // on other hosts; the number is fixed at the start
+  bool actors_elsewhere = false;  // there are actors on other hosts: the number cannot change
   int learner_threads = 0;        // 0: unknown
-  int most_threads = 0;           // threads that have rows of a batch; 0: unknown
+  int most_threads = 0;           // largest useful number (best_split.h); 0: unknown
   bool may_play_ahead = false;    // on policy with ppo.versions_ahead = 0
 };
 
-// Computes the shares from the totals; roles without counts are empty.
+// Computes the shares from the totals. A role without counts has no stages.
 Bottleneck FindBottleneck(const RunTotals& totals, const RunResources& resources);
 
 // Name of a stage in words: "waiting credit".
@@ -58,9 +58,9 @@ std::string WordsOf(std::string stage);
 // The share of a role's time in a stage; 0 if the role has no such stage.
 double ShareOf(const Bottleneck& figures, std::string_view role, std::string_view stage);
 
-// The report, a line per role and the advice.
+// The report as text: one line for each role, then the advice.
 std::vector<std::string> FormatBottleneck(const Bottleneck& bottleneck);
-// bottleneck.json of a run (shoal-bottleneck-1). Throws Error.
+// Writes bottleneck.json of a run (shoal-bottleneck-1). Throws Error.
 void WriteBottleneck(const std::filesystem::path& run, const Bottleneck& bottleneck);
 
 }  // namespace shoal::launch

@@ -12,7 +12,7 @@ struct ListenAddress {
   uint16_t port = 0;
 
   std::string Text() const;  // "127.0.0.1:9464"
-  bool Loopback() const;     // only this host reaches it: 127.0.0.0/8
+  bool Loopback() const;     // 127.0.0.0/8: only this host reaches the address
 };
 
 // Whether the text is an IPv4 address of four numbers.
@@ -20,7 +20,7 @@ bool IsAddress(const std::string& text);
 
 // Throws Error with the system's reason if this process cannot listen on the address: the port is
 // taken, or the address does not belong to this host. `who`: the option or program that needs the
-// address. Server libraries report a failure without its reason.
+// address. This check is needed because server libraries report a failure without its reason.
 void CheckCanListen(const ListenAddress& listen, const std::string& who);
 
 }  // namespace shoal::launch

@@ -10,8 +10,8 @@
 
 namespace shoal::launch {
 
-// Any thread may call each method. Holds at most `capacity` messages; further ones are dropped and
-// counted.
+// Any thread may call each method. Holds at most `capacity` messages; further messages are dropped
+// and counted.
 template <class M>
 class MessageInbox {
  public:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The run's view as a page that Prometheus scrapes: http://ADDRESS:PORT/metrics.
 //
-//   shoal_NAME{run, role, id, host}    every figure of docs/monitoring.md
-//   shoal_process_up{...}              1; 0 when the process has not been heard for a while
+//   shoal_NAME{run, role, id, host}    every metric of docs/monitoring.md
+//   shoal_process_up{...}              1; 0 if the process has not reported for a while
 //   shoal_run_env_steps{run}, shoal_run_updates{run}
 #pragma once
 
@@ -13,12 +13,12 @@
 
 namespace shoal::launch {
 
-// Serves on threads of its own until destruction.
+// Serves on its own threads until destruction.
 class PrometheusEndpoint {
  public:
   // `where`: "ADDRESS:PORT", or "PORT" for 127.0.0.1. Throws Error if the text has another form, or
-  // if the program cannot listen there (the port is taken, or the address does not belong to this
-  // host).
+  // if the program cannot listen at the address (the port is taken, or the address does not belong
+  // to this host).
   explicit PrometheusEndpoint(const std::string& where);
   ~PrometheusEndpoint();
   PrometheusEndpoint(const PrometheusEndpoint&) = delete;

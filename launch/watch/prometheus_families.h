@@ -10,7 +10,7 @@
 
 namespace shoal::launch {
 
-// One family per metric name, sorted by name; figures that are not finite are left out.
+// One family per metric name, sorted by name; values that are not finite are left out.
 std::vector<prometheus::MetricFamily> PrometheusFamilies(const RunViewMessage& view);
 
 }  // namespace shoal::launch

@@ -17,9 +17,9 @@ class RecentRate {
   explicit RecentRate(double window_seconds = kWindowSeconds, double least_seconds = kLeastSeconds)
       : window_seconds_(window_seconds), least_seconds_(least_seconds) {}
 
-  // Adds the count at a time; times must grow. Returns the growth per second over the window; empty
-  // until least_seconds are covered. If the count has become smaller (a learner that continues from
-  // a checkpoint), the window starts again.
+  // Adds the count at time `seconds`, which must be later than the previous time. Returns the
+  // growth per second over the window; empty until least_seconds are covered. If the count has
+  // become smaller (a learner that continues from a checkpoint), the window starts again.
   std::optional<double> Add(double seconds, double count);
 
  private:

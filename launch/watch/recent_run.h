@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recent figures of a run, for users: rates, remaining time and use of time. One-second rates are
+// Recent rates of a run, its remaining time and its use of time, for users. One-second rates are
 // noisy and averages since the start lag behind; these are 30-second averages.
 #pragma once
 
@@ -13,7 +13,7 @@ namespace shoal::launch {
 
 // Counts of a run at one moment.
 struct RunMoment {
-  double seconds = 0;  // of the run so far; never falls
+  double seconds = 0;  // time of the run so far; never falls
   double env_steps = 0;
   std::optional<double> updates;  // empty: the learner has not reported
 };
@@ -23,20 +23,20 @@ class RecentRun {
  public:
   // Call it about once a second.
   void Add(const RunMoment& moment, RunTotals totals);
-  // Drops all figures and starts again kSettling later. Call it after a change that makes earlier
-  // figures useless, such as a pause.
+  // Drops all counts and starts again kSettling later. Call it after a change that makes earlier
+  // counts useless, such as a pause.
   void Forget(double seconds);
 
-  // Per second, over the last 30 s; empty until RecentRate::kLeastSeconds are covered.
+  // Rates over the last 30 s; empty until RecentRate::kLeastSeconds are covered.
   std::optional<double> env_steps_per_second() const { return env_steps_per_second_; }
   std::optional<double> updates_per_second() const { return updates_per_second_; }
-  // Remaining time at the pace of the last two minutes. Unknown before the first update and in the
-  // first seconds after that update: without updates a run is many times faster.
+  // Remaining time at the pace of the last two minutes. Empty before the first update and in the
+  // first seconds after this update, because a run without updates is many times faster.
   std::optional<double> SecondsLeft(double env_steps, double budget) const;
   // Counts of the last 30 s, or of the known part of that interval.
   RunTotals Totals() const;
 
-  static constexpr double kSettling = 3;  // seconds, until reports that span a pause have arrived
+  static constexpr double kSettling = 3;  // seconds in which reports that span a pause arrive
 
  private:
   struct Counted {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chooses the reported figures of the progress display, for the coordinator and for other programs.
+// Takes the numbers of the progress display from reports, for the coordinator and for other
+// programs.
 #pragma once
 
 #include "common/config/config.h"
@@ -11,7 +12,7 @@
 
 namespace shoal::launch {
 
-// Fills the figures that processes report; the others keep their defaults.
+// Sets the members that processes report; the other members keep their initial values.
 ProgressFigures CollectFigures(const MetricsView& view, SteadyTime now);
 
 // Replaces the one-second rates by 30-second rates. Adds the shares of time in which the limiter
@@ -19,7 +20,7 @@ ProgressFigures CollectFigures(const MetricsView& view, SteadyTime now);
 // `figures->budget`.
 void AddLately(const RecentRun& recent, const Bottleneck& lately, ProgressFigures* figures);
 
-// Adds the figures that only the coordinator has to its own report.
+// Adds to the coordinator's report the numbers that no other process reports.
 void AddRunFigures(const ProgressFigures& figures, MetricsReport* report);
 // Adds budget, stop rule and resources of the run, with their present values.
 void AddOrders(const Config& config, const RunResources& resources, MetricsReport* report);
@@ -27,7 +28,7 @@ void AddOrders(const Config& config, const RunResources& resources, MetricsRepor
 void AddShares(const Bottleneck& lately, MetricsMessage* report);
 // One sentence from a view: advice on speed or, while the run ends, its present stage.
 std::string AdviceOfView(const RunViewMessage& view);
-// The figures of a view, in the form of the run's own progress display.
+// The numbers of a view, in the form of the run's own progress display.
 ProgressFigures FiguresOfView(const RunViewMessage& view, SteadyTime now);
 
 }  // namespace shoal::launch

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the running run that a command is for: by name, by address, or the only one that runs.
+// Finds the running run to which a command applies: by name, by address, or as the only run that is
+// running.
 #pragma once
 
 #include <filesystem>
@@ -13,15 +14,15 @@ namespace shoal::launch {
 
 struct TargetOptions {
   std::string run;   // name within run_dir, or path of the folder
-  std::string peer;  // HOST:PORT of the coordinator's side for clients
+  std::string peer;  // HOST:PORT at which the coordinator accepts clients
   std::string run_dir = "runs";
-  std::string secure = {};  // folder of credentials; empty = the one in the run's cluster.json
+  std::string secure = {};  // folder of credentials; empty = as in the run's cluster.json
 };
 
 struct RunTarget {
   std::string name;                // for messages: the run's name or the peer
-  std::string coordinator;         // for messages: its HOST:PORT
-  std::filesystem::path folder{};  // empty when given by peer
+  std::string coordinator;         // for messages: HOST:PORT of the coordinator
+  std::filesystem::path folder{};  // empty if the run was given by --peer
   ClusterAddress address{};
   TransportConfig transport{};
 };
@@ -30,7 +31,8 @@ struct RunTarget {
 // name; empty if `dir` does not exist. Throws Error if this user may not read `dir`.
 std::vector<std::filesystem::path> ListRuns(const std::filesystem::path& dir);
 
-// Throws Error: both run and peer given, no such run, not running, none or several running.
+// Finds the run. Throws Error if both run and peer are given, if there is no such run or the run is
+// not running, or if neither is given and not exactly one run is running.
 RunTarget ResolveTarget(const TargetOptions& options);
 
 }  // namespace shoal::launch

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The run's TensorBoard scalars, x = env steps: training, rollouts and evaluations. The coordinator
-// is the only process that writes them, so that TensorBoard follows one file per start of the run.
-// The figures of the learner arrive in its reports.
+// The run's TensorBoard scalars, x = env steps: training, rollouts and evaluations. Only the
+// coordinator writes the scalars, so that TensorBoard follows one file per start of the run. The
+// learner's metrics arrive in its reports.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,9 @@
 
 namespace shoal::launch {
 
-// Writes to a new file in RUN/tensorboard. Each tag gets each step once, over all starts of the
-// run: a point is left out if its tag already has a point at this step or a later one. One thread.
+// Writes to a new file in RUN/tensorboard. Over all starts of the run, each tag has at most one
+// point per step: a point is left out if its tag already has a point at this step or at a later
+// step. One thread.
 class ScalarLog {
  public:
   explicit ScalarLog(const std::filesystem::path& run);  // throws Error
@@ -33,15 +34,15 @@ class ScalarLog {
   // Writes the run's end for the hparams tab.
   void WriteEnd(bool success);
 
-  // eval/mean_reward, eval/mean_ep_length, eval/success_rate.
+  // Writes eval/mean_reward, eval/mean_ep_length, eval/success_rate.
   void WriteEvaluation(const EvaluationPoint& point);
-  // rollout/ep_rew_mean, rollout/success_rate, rollout/ep_len_mean; every 5 s, starting with the
-  // first finished episode.
+  // Writes rollout/ep_rew_mean, rollout/success_rate, rollout/ep_len_mean every 5 s, starting with
+  // the first finished episode.
   void WriteRollouts(const MetricsView& view, const ProgressFigures& figures, SteadyTime now);
-  // Writes each figure of the updates under its tag (learner/agent/update_figures.h),
-  // train/n_updates and time/fps, the mean since this session's first update. A report of the
-  // learner is written if the learner has made updates since the report before. Reports of other
-  // roles are ignored.
+  // Writes each metric of the updates under its tag (learner/agent/update_figures.h),
+  // train/n_updates, and time/fps (mean since this session's first update). A report of the learner
+  // is written if the learner has made updates since its previous report. Reports of other roles
+  // are ignored.
   void WriteTraining(const MetricsMessage& report, SteadyTime now);
 
  private:

@@ -31,8 +31,8 @@ size_t ColumnsOf(std::string_view text);
 std::string CutToColumns(std::string text, size_t columns);
 
 // The text in lines of at most `columns`, broken at spaces if there are any. The first line keeps
-// its leading spaces. The other lines are indented two columns further; if `hanging` is false, they
-// are not indented.
+// its leading spaces. The other lines are indented two columns further than the first line, or not
+// at all if `hanging` is false.
 std::vector<std::string> WrapToColumns(std::string_view text, size_t columns, bool hanging = true);
 
 // A line of text for stdout: wrapped if stdout is a terminal, else whole.
@@ -44,16 +44,17 @@ int RowsOf(const std::vector<size_t>& line_columns, int terminal_columns);
 // One thread.
 class TerminalBlock {
  public:
-  // Replaces what was drawn before. Lines below the last row of the terminal are left out.
+  // Replaces the block drawn before. Lines below the last row of the terminal are left out.
   void Draw(const std::vector<std::string>& lines);
   // Erases the block and leaves the cursor at the start of an empty line. Also erases text that the
   // terminal echoed below the block, such as the ^C of Ctrl-C. If the terminal became narrower, the
-  // rows that wrapping has added are erased too. A terminal that cuts lines instead of wrapping
-  // them (xterm) loses as many rows above the block.
+  // rows that wrapping has added are also erased. A terminal that cuts lines instead (xterm) loses
+  // the same number of rows above the block.
   void Erase();
   // Keeps the block as the last lines on the terminal and erases text echoed below the block.
   void Leave();
-  // Keeps the block in place. The next block is drawn at the cursor, below other output.
+  // Forgets the block without erasing it. The next block is drawn at the cursor, below other
+  // output.
   void Forget() { drawn_.clear(); }
 
  private:

@@ -16,10 +16,10 @@
 
 namespace shoal::actor {
 
-// Frames (2, 4, 4) of bytes 10 * (key % 10) + step; vectors {key % 1000, step}. The reward is the
-// first component of the action; a reward above 0.5 is a success; the distance is 100 - step.
-// Episodes end after `length` steps: terminated, or truncated if the key is odd. The goal picture
-// has bytes 200 + key % 10.
+// All bytes of a frame (2, 4, 4) are 10 * (key % 10) + step. The vector is {key % 1000, step}. The
+// reward is the first component of the action; a reward above 0.5 is a success. The distance is 100
+// - step. Episodes end after `length` steps: truncated if the key is odd, else terminated. All
+// bytes of the goal picture are 200 + key % 10.
 class CountingEnvironment final : public worlds::Environment {
  public:
   static constexpr int kLength = 3;
@@ -63,10 +63,10 @@ class CountingEnvironment final : public worlds::Environment {
             .distance = static_cast<float>(100 - step_)};
   }
 
-  // Whether an episode is faulty at a step, 0 = its reset.
+  // Returns whether an episode is faulty at a step; step 0 = the episode's reset.
   std::function<bool(uint64_t key, int step)> faulty;
 
-  // Reported time of the user's code; empty: the environment is one of Shoal's own.
+  // Reported time of the user's code; empty = the environment is a world of Shoal.
   std::optional<double> users_share;
 
   double render_seconds() const override { return 0; }

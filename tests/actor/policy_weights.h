@@ -13,7 +13,7 @@
 
 namespace shoal::actor {
 
-// All parameters are zero except the last layer's biases: `mean` and `raw_log_std` (the number
+// All parameters are zero except the biases of the last layer: `mean` and `raw_log_std` (the number
 // before the tanh of Eq. 4) for each action component.
 inline ReceivedWeights ConstantPolicy(const NetworkConfig& network, const ObservationSpec& spec,
                                       WeightsVersion version, float mean, float raw_log_std,

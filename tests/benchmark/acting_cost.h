@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cost of inference in an actor, measured alone with an untrained policy.
+// The cost of inference in an actor, measured without the actor's other work, with an untrained
+// policy.
 #pragma once
 
 #include <memory>
@@ -13,7 +14,7 @@ namespace shoal::bench {
 // Initial weights of a policy, as safetensors.
 std::string FirstWeights(const RunConfig& run);
 
-// A selector with these weights, with an episode begun in each environment.
+// A selector with these weights. An episode has begun in each environment.
 std::unique_ptr<actor::ActionSelector> MakeSelector(const RunConfig& run,
                                                     const std::string& weights);
 
@@ -21,7 +22,8 @@ std::unique_ptr<actor::ActionSelector> MakeSelector(const RunConfig& run,
 // together; measured for `seconds`.
 double InferSeconds(const RunConfig& run, const std::string& weights, double seconds);
 
-// The same in CPU time of the calling thread, which does not depend on other load of the machine.
+// Like InferSeconds, but CPU time of the calling thread, which does not depend on other load of the
+// machine.
 double InferCpuSeconds(const RunConfig& run, const std::string& weights, double seconds);
 
 }  // namespace shoal::bench

@@ -11,8 +11,8 @@
 
 namespace shoal::bench {
 
-// A row of the file. It has at most one limit: the ratio should be at least `target`, or the figure
-// at most `at_most`.
+// A row of the file. A row has at most one limit: `ratio` should be at least `target`, or `figure`
+// should be at most `at_most`.
 struct ReportedRow {
   std::string stage, unit, against;
   double figure = 0;
@@ -30,11 +30,11 @@ Report ParseReport(std::string_view text, const std::string& source);
 // The rows as a Markdown table.
 std::string MarkdownTable(const Report& report);
 
-// One stage of two commits.
+// Comparison of one stage between two commits.
 struct Comparison {
   std::string stage, unit, against;
   double ours = 0, theirs = 0;  // medians
-  double ratio = 0;             // median of ours / theirs, repetition by repetition
+  double ratio = 0;             // median over the repetitions of ours / theirs
   double spread = 0;            // (largest - smallest ratio) / ratio
 };
 

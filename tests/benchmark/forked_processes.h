@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Processes of one measurement, forked from a process that has no threads yet: pipes between them,
-// their DDS domain, and the configuration of their run.
+// Processes of one measurement, forked from a process that has no threads yet: pipes between the
+// processes, their DDS domain, and the configuration of their run.
 #pragma once
 
 #include <fcntl.h>
@@ -20,8 +20,8 @@
 
 namespace shoal::bench {
 
-// Pipe for values of type T between processes. Writes are atomic, also with several writers. Throws
-// Error if the other side has ended.
+// Pipe for values of type T between processes. Writes are atomic, also with several writers. The
+// functions throw Error if the other side has ended.
 template <class T>
 class Pipe {
   static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= 512);
@@ -46,7 +46,7 @@ class Pipe {
     }
     return value;
   }
-  // Also throws Error if nothing is received before the deadline.
+  // Throws Error also if no value is received before the deadline.
   T Read(std::chrono::milliseconds deadline) const {
     pollfd in{.fd = in_.get(), .events = POLLIN, .revents = 0};
     if (poll(&in, 1, static_cast<int>(deadline.count())) <= 0) {
@@ -54,15 +54,15 @@ class Pipe {
     }
     return Read();
   }
-  // Called by a process that only reads: the pipe ends when all other processes have ended.
+  // Call it in a process that only reads. The pipe then ends when all other processes have ended.
   void CloseWriter() { out_.Close(); }
 
  private:
   Descriptor in_, out_;
 };
 
-// Runs `body` in a new process that dies with this one. Its errors are written to stderr, prefixed
-// with `name`.
+// Runs `body` in a new process that dies with this process. Errors of `body` are written to stderr,
+// prefixed with `name`.
 pid_t Fork(const char* name, const std::function<void()>& body);
 
 // The DDS address of a run, in a form that can be sent through a pipe.
@@ -74,7 +74,7 @@ struct Meeting {
 Meeting FreeMeeting(const TransportConfig& transport);
 ClusterAddress AddressOf(const Meeting& meeting);
 
-// Observations of two RGB cameras, 84x84, one frame; actions of four numbers.
+// A run with observations of two RGB cameras, 84x84, one frame, and actions of four numbers.
 RunConfig TwoCameraRun(const std::string& name);
 
 }  // namespace shoal::bench

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Env steps per second of one host, computed from measured rows: the second table of docs/scale.md.
 //
-// C cores are divided among L learner threads, the replay server (with its load of scale_model.h)
+// C cores are divided among L learner threads, the replay server (with the load of scale_model.h)
 // and actors, which use the rest:
 //
 //   t(L) = min((C - L - replay(t)) * actor_rate * kept, B * speed(L) / (update * S))
 //
-// S: samples per insert. B: batch size. speed(L): updates of L threads per update of one thread.
-// `kept`: rate of N actors on N cores as a share of N times the rate of one actor. The split with
-// the most env steps is chosen.
+// t(L): env steps per second. S: samples per insert. B: batch size. speed(L): updates of L threads
+// per update of one thread. `kept`: rate of N actors on N cores as a share of N times the rate of
+// one actor. The split with the most env steps is chosen.
 #pragma once
 
 #include <map>
@@ -28,8 +28,8 @@ class LearnerSpeed {
   LearnerSpeed(std::string_view text, const std::string& source);
   explicit LearnerSpeed(std::map<int, double> times);
 
-  // Interpolates linearly between measured numbers of threads. Beyond the largest one the speed is
-  // constant.
+  // Interpolates linearly between measured numbers of threads. Above the largest measured number
+  // the speed is constant.
   double Of(int threads) const;
 
  private:

@@ -10,11 +10,11 @@
 
 namespace shoal::bench {
 
-// Measures one actor with trivial_environment.py, from state and from one 84x84 picture: CPU time
-// of its process per transition, minus the environment's own step and the inference, which are
-// measured separately. `python` must have the packages shoal_rl and gymnasium. Uses `programs` and
-// `seconds` of `options`. Returns rows of schema shoal-bench-1. Throws Error like
-// MeasureManyActors.
+// Measures one actor with trivial_environment.py, from state and from one 84x84 picture. The cost
+// is the CPU time of the actor's process per transition, minus the environment's own step and the
+// inference, which are measured separately. `python` must have the packages shoal_rl and gymnasium.
+// Uses `programs` and `seconds` of `options`. Returns rows of schema shoal-bench-1. Throws the
+// errors of MeasureManyActors.
 std::vector<nlohmann::ordered_json> HostedActorRows(const ManyActorsOptions& options,
                                                     const std::string& python, int repetitions);
 

@@ -18,11 +18,12 @@ namespace shoal::bench {
 
 class LoneReplica {
  public:
-  // `encoder` and batch of the default configuration. All N replicas are made, on this thread, and
-  // do one update together.
+  // The default configuration with `encoder` and `batch`. Creates all N replicas on this thread;
+  // together they make one update.
   LoneReplica(const std::string& encoder, int batch, int replicas);
 
-  // An update of one rank alone. The cost is that of a real update; the parameters become useless.
+  // Makes an update of replica `rank` alone. The cost is that of a real update; the parameters
+  // become useless.
   void Update(
       int rank, const learner::OnStageEnd& on_stage_end = [](learner::UpdateStage) {});
 

@@ -13,32 +13,31 @@ namespace shoal::bench {
 
 struct ManyActorsOptions {
   std::filesystem::path programs;  // folder of shoal-replay and shoal-fake-actor
-  std::filesystem::path folder;    // an empty one
+  std::filesystem::path folder;    // an empty folder
   int actors = 4;
   double steps_per_second = 50;  // of each actor
-  double seconds = 10;           // measured, after all are found
-  // Real actors of this run in place of those that cost nothing but time, and what they act by, as
-  // safetensors. Their number is that above.
+  double seconds = 10;           // length of the measurement, after all actors have been found
+  // Run and policy weights (safetensors) of real actors. Empty: the actors are shoal-fake-actor.
   std::optional<RunConfig> run{};
   std::string weights{};
 };
 
-// Config of a run without a learner, whose actors never wait.
+// Configuration of a run without a learner, whose actors never wait.
 RunConfig UnlearnedRun(int actors);
 
 struct ManyActorsFigures {
   int actors = 0;
-  // From the last actor's start until the replay has answered every one of them, and from then on
-  // which of it was starting programs.
+  // start_seconds: time to start all actors. found_seconds: time from then until the replay has
+  // answered every actor.
   double found_seconds = 0, start_seconds = 0;
-  double transitions_per_second = 0;        // stored, resets included
-  double env_steps_per_second = 0;          // of them the steps
+  double transitions_per_second = 0;        // stored records per second, including resets
+  double env_steps_per_second = 0;          // stored steps per second
   double replay_us_per_transition = 0;      // CPU time of the replay server
   double actor_us_per_transition = 0;       // CPU time of all actors
-  uint64_t made = 0, stored = 0, lost = 0;  // the account, which balances
+  uint64_t made = 0, stored = 0, lost = 0;  // numbers of records in the run's account
 };
 
-// Throws Error when actors are not found, or end badly, or the account does not balance.
+// Throws Error if actors are not found or fail, or if the numbers of records do not balance.
 ManyActorsFigures MeasureManyActors(const ManyActorsOptions& options);
 
 }  // namespace shoal::bench

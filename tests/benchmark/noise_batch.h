@@ -12,7 +12,7 @@
 
 namespace shoal::bench {
 
-// Two cameras' frames of 84x84, `channels` together.
+// Spec with the 84x84 frames of two cameras, which together have `channels` channels.
 inline ObservationSpec PixelSpec(int channels = 6) {
   ObservationSpec spec;
   spec.task = "bench";
@@ -23,7 +23,7 @@ inline ObservationSpec PixelSpec(int channels = 6) {
   return spec;
 }
 
-// Not movable: the schema is borrowed.
+// Not movable, because `batch` borrows the schema.
 struct NoiseBatch {
   NoiseBatch(const Config& config, const ObservationSpec& spec)
       : schema(spec, {.batch = config.learner.batch}) {

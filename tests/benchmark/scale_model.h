@@ -7,8 +7,8 @@
 //
 //   replay    t (intake + S / B (gather + batch_bytes * handover))   of one core
 //   learner   t S / B * update                                       of one core
-//   link in   t * record_bytes                                       of the replay host's
-//   link out  t S / B * batch_bytes                                  of it, to a learner elsewhere
+//   link in   t * record_bytes                                       of the replay host's link
+//   link out  t S / B * batch_bytes                                  of this link, to a far learner
 #pragma once
 
 #include <span>
@@ -18,20 +18,20 @@
 
 namespace shoal::bench {
 
-// Transitions of one batch in these rows.
+// Batch size in these rows.
 inline constexpr double kScaleBatch = 128;
 
-// Measured; CPU seconds of one core.
+// Measured values. All except actor_rate are CPU seconds of one core.
 struct ScaleConstants {
-  double actor_rate = 0;                       // transitions/s of one actor on a core of its own
+  double actor_rate = 0;                       // transitions/s of one actor on its own core
   double intake = 0;                           // of the replay, per transition
   double gather = 0;                           // of the replay, per batch
-  double handover_near = 0, handover_far = 0;  // of the replay, per byte: to its host, to another
+  double handover_near = 0, handover_far = 0;  // of the replay, per byte: same host, other host
   double update = 0;                           // of the learner, per batch
 };
 
-// Reads the rows that shoal-bench, shoal-bench-batches and shoal-bench-actors write. Throws Error
-// naming the row that is missing.
+// Reads the rows that shoal-bench, shoal-bench-batches and shoal-bench-actors write. If a row is
+// missing, throws Error naming the row.
 ScaleConstants ReadScaleConstants(std::span<const Report> reports);
 
 struct ScaleLoad {

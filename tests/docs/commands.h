@@ -10,11 +10,11 @@
 namespace shoal {
 
 // A command of a block, or a line of a transcript that begins with "$ ". Continued lines (a
-// backslash at the end, an open quote, a loop until its `done`) form one command. Comment lines are
+// backslash at the end, an open quote, a loop up to its `done`) form one command. Comment lines are
 // skipped.
 struct Command {
   int line = 0;
-  std::string text;  // as written, in one or several lines
+  std::string text;  // unchanged, in one or several lines
 };
 
 // The commands of a ```sh block or a transcript; empty for other blocks.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Links between the pages, and from them to files of the tree.
+// Checks links between the pages, and links from pages to files of the tree.
 #pragma once
 
 #include <filesystem>
@@ -10,8 +10,8 @@
 
 namespace shoal {
 
-// "docs/install.md:7: no 'own_tusk.md'", "...: own_task.md has no heading '#bild'". Links to other
-// hosts are not followed.
+// One line for each broken link: "docs/install.md:7: no 'own_tusk.md'", "...: own_task.md has no
+// heading '#bild'". Links to other hosts are not followed.
 std::vector<std::string> LinkFaults(const std::filesystem::path& root,
                                     const std::vector<Page>& pages);
 

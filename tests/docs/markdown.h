@@ -15,22 +15,22 @@ struct Span {
 };
 
 struct Block {
-  int line = 0;          // of its first line of content
+  int line = 0;          // number of the first line of content
   std::string language;  // "sh"; may be empty
   std::vector<std::string> lines;
 };
 
 struct Page {
-  std::string file;  // from the root: "docs/install.md"
+  std::string file;  // path from the root: "docs/install.md"
   std::vector<Block> blocks;
-  std::vector<Span> headings;  // as written, without the #
+  std::vector<Span> headings;  // without the #
   std::vector<Span> code;      // `...` outside of blocks
-  std::vector<Span> links;     // targets
+  std::vector<Span> links;     // targets of links
 };
 
 Page ParsePage(const std::string& file, const std::string& text);
 
-// README.md, CHANGELOG.md and every page below docs, by name.
+// Reads README.md, CHANGELOG.md and every page below docs, sorted by name.
 std::vector<Page> ReadPages(const std::filesystem::path& root);
 
 // The anchors of the page's headings, as GitHub generates them.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rules for testing the example commands of the pages. Without a matching rule a command runs
+// Rules for testing the example commands of the pages. If no rule matches, a command runs
 // unchanged.
 #pragma once
 
@@ -9,9 +9,9 @@
 namespace shoal {
 
 enum class Trial {
-  kSmaller,    // run with less to do: `text` replaces what the pattern matches ($1 as in regex)
-  kElsewhere,  // a test does what it does: `text` is its name, "NewProject.BuildsAndTrains"
-  kNotHere,    // cannot run in a test: `text` is the reason
+  kSmaller,  // `text` replaces the matched part ($1 as in regex), so that the command has less work
+  kElsewhere,  // another test covers it: `text` is the test's name, "NewProject.BuildsAndTrains"
+  kNotHere,    // the command cannot run in a test: `text` is the reason
 };
 
 struct TrialRule {
@@ -20,12 +20,12 @@ struct TrialRule {
   std::string text;
 };
 
-// The rules in order. The first matching kElsewhere or kNotHere decides about a command; all
-// matching kSmaller rules change it.
+// The rules in order. If a kElsewhere or kNotHere rule matches a command, the first such rule
+// decides. All matching kSmaller rules change the command.
 const std::vector<TrialRule>& TrialRules();
 
-// The command for the shell: the original, a smaller one, or ":". Adds the numbers of the applied
-// rules to `used`.
+// The command for the shell: the original command, a smaller command, or ":". Adds the numbers of
+// the applied rules to `used`.
 std::string Tried(const std::string& command, std::vector<size_t>* used);
 
 }  // namespace shoal

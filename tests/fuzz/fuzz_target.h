@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Common parts of the fuzz targets. Each target defines libFuzzer's entry point; replay_corpus.cpp
-// runs it over files where libFuzzer is not linked.
+// Common parts of the fuzz targets. Each target defines libFuzzer's entry point. If libFuzzer is
+// not linked, replay_corpus.cpp calls the entry point with files.
 #pragma once
 
 #include <cstddef>
@@ -21,8 +21,8 @@ inline std::string Text(const uint8_t* data, size_t size) {
 // Ends the process unless the error message is one non-empty line.
 void CheckOneLine(std::string_view message);
 
-// Calls `read` with the first byte and the remaining text. An Error that it throws must be one
-// line. Returns the result for libFuzzer.
+// Calls `read` with the first byte and the remaining text. The message of an Error from `read` must
+// be one line. Returns the result for libFuzzer.
 int Try(const uint8_t* data, size_t size,
         const std::function<void(uint8_t which, const std::string& bytes)>& read);
 

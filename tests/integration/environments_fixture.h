@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Actors with Python environments. The package gymnasium is a replacement in environments/, so that
-// no network is needed.
+// Actors with Python environments. A small replacement of the package gymnasium in environments/ is
+// used, so that no download is needed.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ class Environments : public testing::Test {
     words.insert(words.begin(), ProgramPath("shoal"));
     return RunCommand(std::move(words), deadline, Surroundings());
   }
-  // `shoal train` of an environment, for some thousand steps.
+  // Words of `shoal train` for an environment, for some thousand steps.
   std::vector<std::string> Words(const std::string& environment, TrainingRun::Keys keys = {},
                                  const std::vector<std::string>& flags = {}) const {
     TrainingRun::Keys all{{"env_steps", "2000"},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Message of an evaluation actor, with two episodes.
+// A message of an evaluation actor, with two episodes.
 #pragma once
 
 #include <nlohmann/json.hpp>

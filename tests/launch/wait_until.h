@@ -9,7 +9,7 @@
 
 namespace shoal {
 
-// Polls until `condition` holds. Returns false after ten seconds.
+// Polls until `condition` returns true. Returns false after ten seconds.
 template <class Condition>
 bool WaitUntil(Condition condition) {
   const SteadyTime start = Now();

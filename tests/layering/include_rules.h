@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rules for includes between folders, checked in the source tree.
 //
-// - common < actor, replay_server, learner < launch < tests: a folder uses itself and those before
-//   it; the three in the middle do not use each other.
-// - Inside common, a folder uses those before it in the order of common/CMakeLists.txt; inside the
-//   others, a room uses those before it in the order of include_rules.cpp (actor: worlds < acting <
-//   sending < ...), to which new rooms are added. Files in the top folder connect its rooms, which
-//   do not include them. The tools (launch/tools) follow the rooms of a run, which therefore
-//   include none of the tools.
-// - replay_server/core knows neither its service nor the transport, no clock and no threads;
-//   learner/agent no transport, clock, lock or file, and no threads but those of replicas.
-// - The rooms of roles (actor, replay_server, learner) know the link and none of its
-//   implementations; their programs do. These rooms, the link and the coordinator's rooms wait,
-//   sleep and make threads through common/base alone, so that a simulation can run them.
-// - A third-party library with a home (DDS, oneDNN, MuJoCo, ...) is included there and in that
-//   folder's tests alone; and in tests/stock_client, a program as others would write it.
+// - Order of folders: common < actor, replay_server, learner < launch < tests. A folder uses itself
+//   and earlier folders. actor, replay_server and learner do not use each other.
+// - Inside common, a folder uses earlier folders in the order of common/CMakeLists.txt. Inside the
+//   other folders, a room (subfolder) uses earlier rooms in the order of include_rules.cpp (actor:
+//   worlds < acting < sending < ...); add new rooms to this order. Files in the top folder connect
+//   its rooms, and the rooms do not include these files. The tools (launch/tools) come after the
+//   rooms of a run, so these rooms include none of the tools.
+// - replay_server/core uses neither its service nor the transport, clocks or threads.
+//   learner/agent uses no transport, clock, lock or file, and only the threads of replicas.
+// - The rooms of roles (actor, replay_server, learner) use the link, but no implementation of the
+//   link; the programs of the roles use the implementations. These rooms, the link and the
+//   coordinator's rooms wait, sleep and make threads only through common/base, so that a simulation
+//   can run them.
+// - If a third-party library belongs to a folder (DDS, oneDNN, MuJoCo, ...), only this folder, its
+//   tests and tests/stock_client include the library. tests/stock_client is an example of a program
+//   by other authors.
 // - Headers begin with #pragma once after their comment; no file is called utils, helpers, ...
 #pragma once
 
@@ -24,7 +26,7 @@
 
 namespace shoal {
 
-// One line per breach: "FILE:LINE: what". `root` is the root of the source tree.
+// One line per breach of a rule: "FILE:LINE: what". `root` is the root of the source tree.
 std::vector<std::string> FindBreaches(const std::filesystem::path& root);
 
 // Number of source files found, to distinguish a clean tree from an empty one.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The names that one source file declares at namespace scope, read without a compiler.
+// The names that one source file declares at namespace scope; found without a compiler.
 //
 // Supports the C++ that this tree uses: namespaces, types, functions, variables with one or more
 // declarators, aliases, using-declarations, unscoped enumerators, macros, the tests and matchers
@@ -22,7 +22,7 @@ struct SourceName {
   std::string scope;  // "shoal::(unnamed)"; empty for macros and the global namespace
   std::string name;
   NameKind kind = NameKind::kValue;
-  bool is_internal = false;  // in an unnamed namespace, or with internal linkage of its own
+  bool is_internal = false;  // in an unnamed namespace, or declared with internal linkage
   bool is_definition = true;
   int line = 0;
   std::string text;  // definition of an alias, an import or a macro

@@ -12,10 +12,11 @@ namespace shoal {
 bool IsOpeningBracket(std::string_view text);
 bool IsClosingBracket(std::string_view text);
 
-// Index after the bracket that closes the one at `begin`; the number of tokens if it is not closed.
+// Index after the bracket that closes the bracket at `begin`; the number of tokens if there is
+// none.
 size_t BehindGroup(const std::vector<SourceToken>& tokens, size_t begin);
 
-// Index after the `>` of the `<` at `begin`; the number of tokens if it is not closed.
+// Index after the `>` that closes the `<` at `begin`; the number of tokens if there is none.
 size_t BehindAngles(const std::vector<SourceToken>& tokens, size_t begin);
 
 }  // namespace shoal

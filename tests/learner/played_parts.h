@@ -20,7 +20,7 @@
 
 namespace shoal::learner {
 
-// Returns batches whose content depends on the request only; calls `before` before each batch.
+// Returns batches whose content depends only on the request. Calls `before` before each batch.
 class PlayedBatches final : public BatchStream {
  public:
   PlayedBatches(const RunConfig& run, uint64_t first_request)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The loop with a real, small agent; the test simulates batches, readers and the coordinator.
+// The training loop with a real, small agent. The test simulates batches, readers and the
+// coordinator.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -48,7 +49,8 @@ class SlowAgent final : public Agent {
 
 class TrainingLoopTest : public testing::Test {
  protected:
-  // One learner process, from the newest checkpoint until `stop_after` batches were consumed.
+  // Plays one learner process, from the newest checkpoint until `stop_after` batches have been
+  // consumed.
   TrainingLoop::End Train(uint64_t stop_after,
                           const std::function<void(PlayedBatches&)>& script = {}) {
     sink_.spec_hash = run_.spec.Hash();
@@ -98,7 +100,7 @@ class TrainingLoopTest : public testing::Test {
     control_.OnMessage(message, Now());
   }
 
-  // A figure of the last report.
+  // A metric of the last report.
   double Figure(const std::string& name) const {
     const MetricsMessage& report = sink_.reports.back();
     const auto at = std::ranges::find(report.names, name);

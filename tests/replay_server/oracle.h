@@ -52,20 +52,22 @@ struct Oracle {
     ++counts->stored;
   }
 
-  // Whether `one` directly precedes `other`: goal, reset, then steps by index.
+  // Whether `one` directly precedes `other`. The order is goal, reset, steps by index.
   static bool Precedes(const RecordHeader& one, const RecordHeader& other) {
     if (other.kind == RecordKind::kReset) return one.kind == RecordKind::kGoal;
     return one.kind != RecordKind::kGoal && one.index + 1 == other.index;
   }
 
-  // Ends the environment's episode with its newest record if the episode belongs to this session.
+  // Ends the episode of the environment at its newest record if the episode belongs to this
+  // session.
   void Cut(uint32_t actor, uint64_t session, uint32_t env) {
     const uint64_t id = newest.contains(env) ? newest[env] : 0;
     if (id != 0 && all[id - 1].actor == actor && all[id - 1].session == session) ended.insert(id);
   }
 
-  // A restarted server knows only the records in the ring. An episode has ended there if its last
-  // record has a flag or a next episode exists; the newest record shows which episode continues.
+  // Simulates a restart. The restarted server has only the records in the ring. In the ring an
+  // episode has ended if its last record has a flag or if a later episode of the environment
+  // exists.
   void ReadAnew() {
     for (const auto& [env, id] : newest) {
       if ((all[id - 1].header().flags & (kTerminated | kTruncated)) == 0) ended.erase(id);
@@ -85,7 +87,7 @@ struct Oracle {
 
   bool Holds(uint64_t id) const { return id > 0 && id <= all.size() && id + capacity > all.size(); }
 
-  // Ids of the frames of the observation at `id`, newest first; empty if one was overwritten.
+  // Ids of the frames of the observation at `id`, newest first; empty if a frame was overwritten.
   std::optional<std::vector<uint64_t>> Stack(uint64_t id) const {
     std::vector<uint64_t> ids;
     for (int k = 0; k < stack; ++k) {
@@ -96,7 +98,7 @@ struct Oracle {
     return ids;
   }
   // The steps of the sample that begins with `id`, oldest first: n_step steps, or the steps up to a
-  // termination. Empty if `id` was overwritten or is no step, or if the episode has fewer steps.
+  // termination. Empty if `id` was overwritten or is not a step, or if the episode has fewer steps.
   std::optional<std::vector<uint64_t>> Steps(uint64_t id) const {
     if (!Holds(id) || all[id - 1].header().kind != RecordKind::kStep) return std::nullopt;
     std::vector<uint64_t> ids{id};
@@ -120,7 +122,7 @@ struct Oracle {
   int stack;
   int n_step = 1;
   bool whole_episodes = false;
-  bool goal_pictures = false;             // each episode's first record is its goal
+  bool goal_pictures = false;             // the first record of each episode is a goal record
   std::vector<Stored> all{};              // id = position + 1
   std::map<uint32_t, uint64_t> newest{};  // by env
   std::set<uint64_t> ended{};             // newest records of episodes that have ended

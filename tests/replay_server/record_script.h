@@ -17,7 +17,7 @@
 
 namespace shoal::replay {
 
-// Small and odd on purpose, so that record sizes are not multiples of powers of two.
+// A spec with small and odd sizes, so that record sizes are not multiples of powers of two.
 inline ObservationSpec TinySpec(int stack, int height = 3, int width = 5) {
   ObservationSpec spec;
   spec.task = "Test";
@@ -32,7 +32,7 @@ inline ObservationSpec TinySpec(int stack, int height = 3, int width = 5) {
   return spec;
 }
 
-// The policy gets a picture of the goal in place of the goal's numbers.
+// The spec if the policy gets a picture of the goal in place of the goal's numbers.
 inline ObservationSpec WithGoalPicture(ObservationSpec spec) {
   spec.goal_picture = true;
   for (BlockSpec& block : spec.blocks) block.observed &= block.name != "desired_goal";
@@ -55,12 +55,13 @@ inline RunConfig TinyRun(int stack, int64_t capacity) {
   return run;
 }
 
-// One record; pixels, vector, action and reward follow from (actor, env, episode, index).
+// Makes one record. Pixels, vector, action and reward are functions of (actor, env, episode,
+// index).
 inline std::vector<uint8_t> MakeRecord(const ObservationSpec& spec, uint32_t actor, uint32_t env,
                                        uint32_t episode, uint32_t index, uint64_t sequence,
                                        uint8_t flags = 0) {
   const RecordLayout layout(spec);
-  // Records are read through casts to 8-byte fields; the memory of a vector is aligned for them.
+  // Records are read through casts to 8-byte fields. The memory of a vector is aligned accordingly.
   std::vector<uint8_t> record(static_cast<size_t>(layout.record_bytes()));
   Random random(HashWords({actor, env, episode, index}));
   RecordHeader& header = RecordLayout::Header(record.data());
@@ -94,7 +95,8 @@ inline std::vector<uint8_t> MakeGoalRecord(const ObservationSpec& spec, uint32_t
 
 // Records of an actor session in which `envs` environments step in turn. Episodes have random
 // lengths and are terminated (half of them by success) or truncated. If the spec has a goal
-// picture, they begin with a goal record. Sequences start at 1; equal arguments give equal records.
+// picture, episodes begin with a goal record. Sequences start at 1; equal arguments give equal
+// records.
 class RecordScript {
  public:
   RecordScript(const ObservationSpec& spec, uint32_t actor, uint64_t session, uint32_t envs = 2,
@@ -155,7 +157,7 @@ class RecordScript {
     const uint32_t episode = static_cast<uint32_t>(session_ * 1000) + where.episode;
     if (begins && spec_.goal_picture) {
       records_.push_back(MakeGoalRecord(spec_, actor_, env, episode, sequence));
-      return;  // next record of this environment: the reset
+      return;  // the next record of this environment is the reset
     }
     records_.push_back(MakeRecord(spec_, actor_, env, episode, where.index, sequence, flags));
     ++where.index;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Configuration and weights that a simulated run begins with.
+// Configuration and initial weights of a simulated run.
 #pragma once
 
 #include <chrono>
@@ -11,7 +11,8 @@
 
 namespace shoal::simulation {
 
-inline constexpr std::chrono::microseconds kStep{20'000}, kUpdate{30'000};  // simulated
+// Simulated durations of a step and of an update.
+inline constexpr std::chrono::microseconds kStep{20'000}, kUpdate{30'000};
 
 struct Blueprint {
   RunConfig run;
@@ -19,10 +20,10 @@ struct Blueprint {
 };
 
 // Three blueprints: off policy with the ring in a file, off policy with the ring in memory, and on
-// policy. Slow, because it creates the real task and a real agent; call it once.
+// policy. The function is slow, because it creates the real task and a real agent; call it once.
 std::vector<Blueprint> MakeBlueprints();
 
-// The blueprint of a seed.
+// Selects the blueprint of a seed.
 const Blueprint& BlueprintOf(uint64_t seed, const std::vector<Blueprint>& blueprints);
 
 }  // namespace shoal::simulation

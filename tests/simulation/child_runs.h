@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Simulated runs in child processes, several at once. The end of a child frees the memory of its
-// killed processes, and a crash fails only one run.
+// Simulated runs in child processes, several at the same time. The end of a child frees the memory
+// of its killed simulated processes, and a crash fails only one run.
 #pragma once
 
 #include <cstdint>
@@ -18,12 +18,12 @@ struct ChildRun {
   bool good = false;
   double simulated_seconds = 0;  // 0 after a crash
   std::string
-      text;  // what was wrong, and the story; of a good run the story where it was asked for
+      text;  // broken promises and story of a failed run; story of a good run if `with_story`
   std::string summary;  // one line
 };
 
-// Runs the seeds that `next` returns, until it returns 0; `jobs` at once. Calls `done` with each
-// result on the calling thread. `faults` returns the faults of a seed.
+// Runs the seeds that `next` returns, until `next` returns 0; `jobs` runs at the same time. Calls
+// `done` with each result on the calling thread. `faults` returns the faults of a seed.
 void RunInChildren(const std::vector<Blueprint>& blueprints, int jobs, bool with_story,
                    const std::function<uint64_t()>& next,
                    const std::function<std::vector<Fault>(uint64_t seed)>& faults,
@@ -33,8 +33,8 @@ void RunInChildren(const std::vector<Blueprint>& blueprints, int jobs, bool with
 ChildRun RunInChild(const std::vector<Blueprint>& blueprints, uint64_t seed,
                     const std::vector<Fault>& faults);
 
-// A shorter list of faults that still fails, as indices into `faults`: removes faults one at a time
-// while the run still fails.
+// Finds a shorter list of faults with which the run still fails: removes faults one at a time as
+// long as the run fails. Returns indices into `faults`.
 std::vector<size_t> ShortenedSchedule(const std::vector<Blueprint>& blueprints, uint64_t seed,
                                       const std::vector<Fault>& faults);
 

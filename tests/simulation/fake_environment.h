@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A cheap environment for simulations: episodes of fixed length, steps of a fixed simulated
-// duration. The first two numbers of an observation are those of the episode and of the step. The
-// reward is the action's first number.
+// duration. The first two numbers of an observation identify the episode and the step. The reward
+// is the action's first number.
 #pragma once
 
 #include <algorithm>

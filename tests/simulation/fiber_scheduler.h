@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Simulated time and threads (common/base/scheduler.h): fibers on one thread of the operating
-// system. A fiber runs until it waits. The next fiber is drawn from a seed, so a simulation is
-// repeatable, and another seed gives another order.
+// system. A fiber runs until it waits. The next fiber is drawn from a seed, so a simulation can be
+// repeated, and another seed gives another order.
 //
-// Time does not pass while a fiber computes, except kPerLook for each read of the clock, so that a
+// Time does not pass while a fiber computes. Only each read of the clock takes kPerLook, so that a
 // loop that polls the clock ends. If no fiber can run, time advances to the earliest wake-up.
 //
 // Fibers belong to processes, identified by their thread group. The fibers of a killed process
-// never run again, nor do their destructors, as after SIGKILL. Their memory is not freed before
-// this program ends, so simulate in a child process.
+// never run again, and their destructors do not run, as after SIGKILL. The memory of these fibers
+// is not freed before this program ends, so simulate in a child process.
 #pragma once
 
 #include <chrono>
@@ -35,29 +35,29 @@ class FiberScheduler final : public Scheduler {
   FiberScheduler(const FiberScheduler&) = delete;
   FiberScheduler& operator=(const FiberScheduler&) = delete;
 
-  // Starts the first fiber of a process. Not called by fibers.
+  // Starts the first fiber of a process. Fibers must not call StartIn.
   uint64_t StartIn(ThreadGroup* group, std::function<void()> body);
-  // Runs fibers until `until`, or until none is left.
+  // Runs fibers until the time `until`, or until no fiber is left.
   void RunUntil(SteadyTime until);
 
-  // No fiber of the group runs before `time`; wake-ups are kept.
+  // Pauses the group: none of its fibers runs before `time`. Wake-ups are kept.
   void Pause(ThreadGroup* group, SteadyTime time);
-  // One fiber of the group, chosen by `which`, does not run before `time`.
+  // Stalls one fiber of the group, selected by `which`: the fiber does not run before `time`.
   void Stall(ThreadGroup* group, uint64_t which, SteadyTime time);
-  // Until `time`, each turn of a fiber of the group takes `turn`.
+  // Slows the group down: until `time`, each turn of its fibers takes `turn`.
   void SlowDown(ThreadGroup* group, SteadyTime::duration turn, SteadyTime time);
-  // A number below `count`, from the seed.
+  // Draws a number below `count` from the seed.
   size_t Draw(size_t count) { return random_.Below(count); }
   // Removes the fibers of the group and closes its descriptors.
   void Kill(ThreadGroup* group);
-  // Fibers of the group that have not ended.
+  // Number of fibers of the group that have not ended.
   int Alive(const ThreadGroup* group) const;
   // Moves the wall clock.
   void MoveWallClock(std::chrono::nanoseconds by) { wall_offset_ns_ += by.count(); }
 
   // The time, for callers outside of fibers.
   SteadyTime NowOutside() const { return now_; }
-  // A hash of the choices and their times, for comparing runs.
+  // A hash of the choices and their times, for comparisons of runs.
   uint64_t TraceHash() const { return trace_; }
   uint64_t switches() const { return switches_; }
 
@@ -81,7 +81,7 @@ class FiberScheduler final : public Scheduler {
   void Block(SteadyTime wake);
   // Waits for a Notify of `condition`. Returns false at the deadline.
   bool WaitFor(const void* condition, SteadyTime deadline);
-  // A runnable fiber, or nullptr.
+  // Draws a runnable fiber; nullptr if there is none.
   Fiber* Choose();
   SteadyTime EarliestWake() const;
   void Resume(Fiber* fiber);
@@ -94,7 +94,7 @@ class FiberScheduler final : public Scheduler {
   int64_t wall_offset_ns_ = 0;
   std::vector<std::unique_ptr<Fiber>> fibers_;
   std::vector<std::unique_ptr<Fiber>> killed_;  // never resumed, never destroyed
-  std::vector<Fiber*> runnable_;                // scratch
+  std::vector<Fiber*> runnable_;                // memory for Choose
   Fiber* running_ = nullptr;
   std::map<int, const ThreadGroup*> files_;  // open descriptors
   struct Slow {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A cheap agent whose update is a hash of the batch. The policy's first action encodes the number
-// of updates, so that tests can compare an evaluated policy with its name. The agent reports a
-// broken promise if a batch changes while the agent reads it, or if observations are not
-// consecutive (fake_environment.h).
+// of updates, so that tests can compare an evaluated policy with the name of its checkpoint. The
+// agent reports a broken promise if a batch changes while the agent reads the batch, or if
+// observations are not consecutive (fake_environment.h).
 #pragma once
 
 #include <fmt/core.h>
@@ -26,7 +26,7 @@ namespace shoal::simulation {
 
 class HashAgent final : public learner::Agent {
  public:
-  // `policy`: tensors as nn::Policy loads them. An update takes `span` of simulated time.
+  // `policy`: tensors in the form that nn::Policy loads. `span`: simulated time of an update.
   HashAgent(nn::TensorMap policy, std::chrono::microseconds span, Story& story)
       : policy_(std::move(policy)), span_(span), story_(story) {
     for (auto& [name, tensor] : policy_) std::ranges::fill(tensor.data, 0);
@@ -110,7 +110,7 @@ class HashAgent final : public learner::Agent {
     return value;
   }
 
-  nn::TensorMap policy_;  // zeros
+  nn::TensorMap policy_;  // all values are zero
   const std::chrono::microseconds span_;
   Story& story_;
   uint64_t updates_ = 0, hash_ = 0;

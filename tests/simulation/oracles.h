@@ -14,7 +14,7 @@
 
 namespace shoal::simulation {
 
-// Records acknowledgements to actors. Its hub has the role of an actor.
+// Records the acknowledgements that actors receive. `hub` has the role of an actor.
 class Witness {
  public:
   explicit Witness(link::Hub& hub)
@@ -33,14 +33,14 @@ class Witness {
 
 struct Facts {
   bool struck = false;         // there were faults
-  bool last_clean = true;      // every process ended cleanly in the last session
+  bool last_clean = true;      // in the last session every process ended cleanly
   bool overwritten = false;    // another run replaced the run
   bool cut = false;            // half of the ring was removed
   bool lost = false;           // the ring was removed
   bool unwritten = false;      // a disk failed
-  bool replay_struck = false;  // the replay server was killed, or held up for long
-  // Wall clock, s: between these times no process ended or was delayed for long, and no clock
-  // jumped.
+  bool replay_struck = false;  // the replay server was killed, or delayed for long
+  // Wall-clock times in s. Between these times no process ended or was delayed for long, and no
+  // clock jumped.
   double orderly_from = 0, orderly_until = 0;
   Witness::Acknowledged acknowledged;
 };

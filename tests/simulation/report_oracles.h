@@ -10,7 +10,7 @@
 
 namespace shoal::simulation {
 
-// Returns one line for each promise that the reports show broken. Throws Error.
+// Returns one line for each promise that is broken according to the reports. Throws Error.
 std::vector<std::string> BrokenInReports(const World& world, const Facts& facts);
 
 }  // namespace shoal::simulation

@@ -28,12 +28,12 @@ class RunOperator {
   // Triggers each fault at its time. Runs in a simulated thread of a separate group.
   void Strike(const std::vector<Fault>& faults);
 
-  // The run has reached its end.
+  // True if the run has reached its end.
   bool finished() const { return finished_; }
   // Whether all processes ended cleanly in the last session.
   bool last_clean() const { return last_clean_; }
   int sessions() const { return sessions_; }
-  // The end of the last fault, its span included.
+  // End of the last fault, including its span.
   SteadyTime quiet_from() const { return quiet_from_; }
 
  private:
@@ -41,7 +41,7 @@ class RunOperator {
   void JudgeExit(const SimulatedProcess& coordinator);
   // Whether the session has printed `text`.
   bool Said(std::string_view text) const;
-  // Whether the session has named a failed process or a file.
+  // Whether the session's output names a failed process or a file.
   bool SaidWhoFailed() const;
   // Reads meta.json and checks that env steps do not decrease.
   launch::RunMeta TakeMeta();
@@ -60,11 +60,11 @@ class RunOperator {
   SimulatedDisk& disk_;
   SimulatedClients clients_;
   bool finished_ = false, last_clean_ = true;
-  bool began_on_full_disk_ = false;  // the session
-  SteadyTime trouble_until_{};       // until then a session may end by itself (MayEndSessions)
+  bool began_on_full_disk_ = false;  // the disk was full when the session began
+  SteadyTime trouble_until_{};       // until this time, sessions may end (MayEndSessions)
   SteadyTime disk_full_until_{};     // end of the last full disk
   int sessions_ = 0, rivals_ = 0;
-  ptrdiff_t session_begin_ = 0;    // its first line in the story
+  ptrdiff_t session_begin_ = 0;    // index of the session's first line in the story
   const Fault* killed_ = nullptr;  // the fault that killed the last coordinator
   std::string last_words_;
   uint64_t env_steps_ = 0;  // at the end of the last session

@@ -19,17 +19,17 @@ struct ClientCall {
   std::vector<std::string> arguments{};
   SteadyTime begun{};
   SteadyTime heard{};  // arrival of the newest view
-  // The coordinator that accepted the order; null before.
+  // The coordinator that accepted the order; null before the acceptance.
   std::shared_ptr<SimulatedProcess> answerer{};
-  std::string last{};   // its last line, or its Error's message
-  bool failed = false;  // with that Error
-  int code = 0;         // its exit code, once it has ended
+  std::string last{};   // last line of the command, or message of its Error
+  bool failed = false;  // the command ended with an Error
+  int code = 0;         // exit code; valid if `ended`
   bool ended = false;
 };
 
-// The deadline of the call, as far as it is known now.
+// The present deadline of the call; it may change while the call is running.
 SteadyTime DeadlineOf(const ClientCall& call);
-// Whether the end of the call is documented.
+// Whether the call ended in a documented way.
 bool IsDocumented(const ClientCall& call);
 
 class SimulatedClients {

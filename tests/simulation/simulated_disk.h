@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A disk with faults (common/base/disk_steps.h): full for a time for all processes, or failing for
-// one process. Some steps are slow, so that other threads run in between and a kill can leave a
-// file half written.
+// A disk with faults (common/base/disk_steps.h). For some time, the disk is full for all processes,
+// or steps of one process fail. Some steps are slow, so that other threads run in between and a
+// kill can leave a file half written.
 #pragma once
 
 #include <cstdint>

@@ -21,13 +21,13 @@ namespace shoal::simulation {
 // fibers may still refer to it.
 class SimulatedProcess {
  public:
-  // Borrows scheduler and network. `log_file` receives the log. `outlives_parent`: the process
+  // Borrows scheduler and network. The log is written to `log_file`. `outlives_parent`: the process
   // gets no signal when the coordinator dies.
   SimulatedProcess(FiberScheduler& scheduler, link::LocalNetwork& network, link::Role role,
                    const std::string& name, const std::string& log_file, bool outlives_parent);
 
-  // Runs `body`, whose result is the exit code, in the first thread of `self`. An Error ends the
-  // process with the product's exit code and error line, which is logged.
+  // Runs `body`, whose result is the exit code, in the first thread of `self`. After an Error, the
+  // process ends with the exit code of this error and logs the error line, like Shoal's programs.
   static void Start(const std::shared_ptr<SimulatedProcess>& self, const std::string& program,
                     std::function<int(link::Hub&)> body);
 
@@ -44,7 +44,7 @@ class SimulatedProcess {
   bool outlives_parent() const { return outlives_parent_; }
   ThreadGroup& group() { return group_; }
   const std::optional<launch::ExitStatus>& ended() const { return ended_; }
-  // Time of the end; undefined before.
+  // Time of the process's end; undefined before the end.
   SteadyTime ended_at() const { return ended_at_; }
   // The error line; empty if there was no Error.
   const std::string& last_words() const { return last_words_; }
@@ -63,7 +63,7 @@ class SimulatedProcess {
   std::string last_words_;
 };
 
-// The body of a child, with its hub; returns the exit code.
+// The main function of a child. Gets the child's hub; returns the exit code.
 using ProcessBody = std::function<int(const launch::ProcessSpec&, link::Hub&)>;
 
 class SimulatedProcesses {
@@ -72,14 +72,14 @@ class SimulatedProcesses {
   SimulatedProcesses(FiberScheduler& scheduler, link::LocalNetwork& network, ProcessBody body)
       : scheduler_(scheduler), network_(network), body_(std::move(body)) {}
 
-  // A child of the coordinator. Destruction of the result kills it.
+  // Starts a child of the coordinator. Destruction of the result kills the child.
   std::unique_ptr<launch::RunningProcess> StartChild(const launch::ProcessSpec& spec);
-  // A process that is not a child of the coordinator. Find also finds it by name.
+  // Starts a process that is not a child of the coordinator. Find also finds this process by name.
   std::shared_ptr<SimulatedProcess> StartOther(const std::string& name, link::Role role,
                                                const std::string& log_file,
                                                std::function<int(link::Hub&)> body);
 
-  // The newest living process of that name; null if there is none.
+  // The newest living process of this name; null if there is none.
   std::shared_ptr<SimulatedProcess> Find(const std::string& name) const;
   // Sends a stop signal to the children that do not outlive the coordinator.
   void OnCoordinatorDeath();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stacks of simulated threads, and the switch between them. On x86-64 a switch is a few
-// instructions; elsewhere it is swapcontext, which asks the kernel for the signal mask twice.
+// Stacks of simulated threads, and the switch between them. On x86-64 a switch takes a few
+// instructions. Other machines use swapcontext, which makes two system calls for the signal mask.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,8 @@
 
 namespace shoal::simulation {
 
-// Memory of a stack, with an inaccessible page below it, so that an overflow is a fault. The memory
-// of a destroyed Stack is reused by later ones. One thread.
+// Memory of a stack. The page below the stack is inaccessible, so that an overflow is a fault.
+// Later Stacks reuse the memory of a destroyed Stack. One thread.
 class Stack {
  public:
   Stack();
@@ -27,15 +27,15 @@ class Stack {
 // A point at which execution can continue: the start of a function, or a call of SwitchTo.
 class StackSwitch {
  public:
-  // The context of a thread that calls SwitchTo.
+  // Context of the thread that calls SwitchTo.
   StackSwitch();
-  // The beginning of `function`, which never returns, on `stack`.
+  // Context at the beginning of `function`, which runs on `stack` and never returns.
   StackSwitch(const Stack& stack, void (*function)());
   ~StackSwitch();
   StackSwitch(const StackSwitch&) = delete;
   StackSwitch& operator=(const StackSwitch&) = delete;
 
-  // Continues at `other`. Returns when another context switches back to this one.
+  // Continues at `other`. Returns when another context switches back to this context.
   void SwitchTo(StackSwitch& other);
 
  private:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The events of a simulated run as text, by simulated time, and the promises broken during the run.
+// The events of a simulated run as text, in the order of simulated time, and the promises that were
+// broken during the run.
 #pragma once
 
 #include <fmt/core.h>
@@ -18,7 +19,7 @@ class Story {
     const double seconds = std::chrono::duration<double>(Now().time_since_epoch()).count();
     lines_.push_back(fmt::format("{:9.3f} s  {}: {}", seconds, who, what));
   }
-  // Records a broken promise, so that the run has failed. Called by simulated threads.
+  // Records a broken promise; the run has then failed. Called by simulated threads.
   void Violate(const std::string& what) {
     Add("VIOLATION", what);
     violations_.push_back(what);

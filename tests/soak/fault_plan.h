@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The faults of a soak: process, kind and time, drawn from a seed.
+// The faults of a long test with faults (fault_soak.h): process, kind and time, drawn from a seed.
 #pragma once
 
 #include <chrono>
@@ -19,11 +19,11 @@ struct Fault {
   std::string process;  // "actor-1", "coordinator"
   FaultKind kind = FaultKind::kKill;
   std::chrono::milliseconds delay{};  // after recovery from the previous fault
-  std::string killed_meanwhile;  // another process, killed while this one is stopped; may be empty
+  std::string killed_meanwhile;  // another process, killed while `process` is stopped; may be empty
 };
 
 // Draws faults. A process is not killed more often than the restart limit of a run allows. After
-// the death of the coordinator, the run has to be resumed.
+// the coordinator's death, the caller must resume the run.
 class FaultPlan {
  public:
   // `processes` does not contain the coordinator. `kills_alone`: no process is stopped.
@@ -32,7 +32,7 @@ class FaultPlan {
   Fault Next(SteadyTime now);
 
  private:
-  std::string Victim(SteadyTime now);  // of a kill; not the coordinator
+  std::string Victim(SteadyTime now);  // draws the process to kill; never the coordinator
 
   const std::vector<std::string> processes_;
   const bool kills_alone_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faults at random times during one training run.
+// Long test: faults at random times during one training run.
 #pragma once
 
 #include <cstdint>
@@ -11,20 +11,21 @@
 namespace shoal::soak {
 
 struct SoakOptions {
-  std::filesystem::path folder;    // an empty one
+  std::filesystem::path folder;    // an empty folder
   std::filesystem::path programs;  // folder of the program shoal
   int actors = 2;
   uint64_t seed = 1;
   std::string preset = "fetch-reach-state";
-  std::string environment{};        // as `shoal train --env` takes it; empty = the preset's task
+  std::string environment{};        // value for `shoal train --env`; empty = the preset's task
   std::vector<std::string> keys{};  // further KEY=VALUE
-  // Seconds until all processes continue after a fault. A busy machine needs more.
+  // Seconds within which all processes must continue after a fault. A busy machine needs more time.
   int recovery = 60;
-  bool kills_alone = false;  // no SIGSTOPs
+  bool kills_alone = false;  // true: only SIGKILL, no SIGSTOP
 };
 
-// Causes `faults` faults, prints a line for each, stops the run and checks its files. Throws Broken
-// (run_under_test.h) at the first broken rule. Returns counts, recovery times and the account.
+// Causes `faults` faults, prints a line for each fault, stops the run and checks the run's files.
+// Throws Broken (run_under_test.h) at the first broken rule. Returns counts, recovery times and the
+// account of records.
 nlohmann::ordered_json SoakFaults(const SoakOptions& options, int faults);
 
 }  // namespace shoal::soak

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Leftovers that a run must not have.
+// Checks for things that a run must not leave behind.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,8 @@ namespace shoal::soak {
 std::set<std::string> SharedMemoryObjects();
 
 // Throws Broken (run_under_test.h) naming leftovers of an ended run: processes, UDP ports, shared
-// memory that is not in `before`, half-written or temporary files, files that others may write.
+// memory that is not in `shared_memory_before`, half-written or temporary files, and files that
+// other users may write.
 void CheckNothingIsLeft(const std::filesystem::path& run,
                         const std::filesystem::path& temporary_files,
                         const std::set<std::string>& shared_memory_before);

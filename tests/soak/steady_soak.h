@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks that memory, open files, threads, queues and files on disk of an undisturbed run do not
+// Long test: memory, open files, threads, queues and files on disk of a run without faults must not
 // grow.
 #pragma once
 
@@ -9,10 +9,11 @@
 
 namespace shoal::soak {
 
-// Trains for `minutes` after a warm-up of a quarter of that time (at least two minutes) and samples
-// every five seconds. The result lists every figure. Its member "broken" has one line for each
-// figure that grows by more than 1 % in ten minutes beyond three standard errors, and for logs and
-// metrics above 5 MB an hour. Throws Broken (run_under_test.h) if the run itself does not work.
+// Trains for `minutes` after a warm-up of a quarter of this time (at least two minutes) and
+// measures every five seconds. The result lists all measured quantities. Its member "broken" has
+// one line for each quantity whose growth in ten minutes, less three standard errors, exceeds 1 %,
+// and for logs and metrics above 5 MB an hour. Throws Broken (run_under_test.h) if the run itself
+// does not work.
 nlohmann::ordered_json SoakSteadily(const SoakOptions& options, double minutes);
 
 }  // namespace shoal::soak

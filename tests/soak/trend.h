@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The trend of a figure that is sampled repeatedly.
+// The trend of a quantity that is measured repeatedly.
 #pragma once
 
 #include <vector>
@@ -12,16 +12,16 @@ class Trend {
 
   int samples() const { return static_cast<int>(values_.size()); }
   double Mean() const;
-  // Slope of the least-squares line, in units per second. 0 with fewer than two samples.
+  // Slope of the least-squares line, in units per second; 0 if there are fewer than two samples.
   double Slope() const;
-  // The slope over ten minutes, in percent of the mean, or of 1 if the mean is below 1: an empty
-  // queue that grows by one in ten minutes grows by 100 %.
+  // The slope over ten minutes, in percent of the mean, or in percent of 1 if the mean is below 1.
+  // For example, an empty queue that grows by one element in ten minutes grows by 100 %.
   double PercentPerTenMinutes() const;
-  // One standard error of the percentage, from the scatter around the line.
+  // Standard error of PercentPerTenMinutes, from the scatter around the line.
   double PercentError() const;
 
  private:
-  double Scale() const;   // from Slope to percent per ten minutes
+  double Scale() const;   // PercentPerTenMinutes / Slope
   double Spread() const;  // sum of squared distances of the times from their mean
 
   std::vector<double> seconds_, values_;

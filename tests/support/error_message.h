@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The message of an error, for tests of refusals.
+// The message of an error, for tests that expect errors.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 
 namespace shoal {
 
-// The message of the Error that `act` throws; empty if it throws none.
+// The message of the Error that `act` throws; empty if `act` throws no Error.
 template <class Act>
 std::string ErrorMessage(Act act) {
   try {
@@ -21,7 +21,7 @@ std::string ErrorMessage(Act act) {
   return "";
 }
 
-// The same for an Error that must have this exit code, for example 2 for wrong usage.
+// The same message. Also expects that the Error has this exit code, for example 2 for wrong usage.
 template <class Act>
 std::string ErrorMessage(int exit_code, Act act) {
   try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a folder of event files as TensorBoard does.
+// Reads a folder of event files like TensorBoard.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@
 
 namespace shoal {
 
-// Sorted by name, which begins with the second of creation.
+// The files sorted by name, which begins with the time of creation in seconds.
 inline std::vector<std::filesystem::path> EventFiles(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -27,7 +27,8 @@ inline std::vector<std::filesystem::path> EventFiles(const std::filesystem::path
   return files;
 }
 
-// Events of one file, whose framing must be complete. Checksums are tested in tf_record_test.
+// Events of one file. Fails the test if the file ends within an event. tf_record_test tests the
+// checksums.
 inline std::vector<tensorboard::proto::Event> ReadEvents(const std::filesystem::path& path) {
   const std::string file = ReadFile(path);
   std::vector<tensorboard::proto::Event> events;
@@ -58,7 +59,7 @@ inline Scalars ReadScalars(const std::filesystem::path& path) {
   return scalars;
 }
 
-// Data for the plugins, by tag.
+// Values for TensorBoard's plugins, by tag.
 inline std::map<std::string, tensorboard::proto::Summary::Value> ReadPluginValues(
     const std::filesystem::path& path) {
   std::map<std::string, tensorboard::proto::Summary::Value> values;

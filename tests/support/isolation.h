@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Isolates the test's process and its children: mounts, network, memory limit. Each function
-// returns
-// "", or the reason why isolation is impossible here, for GTEST_SKIP. Each test must run in a
-// separate process, as with ctest.
+// returns "", or the reason why isolation is impossible on this machine, for GTEST_SKIP. Each test
+// must run in a separate process, as with ctest.
 #pragma once
 
 #include <fcntl.h>
@@ -23,7 +22,7 @@ namespace shoal {
 
 inline std::string Because(const std::string& what) { return what + ": " + std::strerror(errno); }
 
-// Becomes root in a user namespace if the user is not root.
+// Calls unshare(what). If the user is not root, the process becomes root in a new user namespace.
 inline std::string Unshare(int what) {
   const uid_t uid = geteuid();
   if (unshare(uid == 0 ? what : what | CLONE_NEWUSER) != 0) return Because("unshare");
@@ -37,7 +36,7 @@ inline std::string OwnMounts() {
   return "";
 }
 
-// Mounts a disk of this size in memory over the folder, until destruction. Needs OwnMounts().
+// Mounts a disk of this size in memory over the folder, until destruction. Call OwnMounts() before.
 class SmallDisk {
  public:
   SmallDisk(const std::filesystem::path& folder, const std::string& size, unsigned long flags = 0)
@@ -60,7 +59,7 @@ class SmallDisk {
   std::string why_not_;
 };
 
-// Creates a network that has only a loopback interface.
+// Moves the process to a new network that has only a loopback interface.
 inline std::string OwnNetwork() {
   if (const std::string no = Unshare(CLONE_NEWNET); !no.empty()) return no;
   const int fd = socket(AF_INET, SOCK_DGRAM, 0);
@@ -104,7 +103,7 @@ class MemoryLimit {
   const std::filesystem::path& group() const { return group_; }
 
  private:
-  // This process's group in the hierarchy whose line of /proc/self/cgroup holds `key`.
+  // This process's group in the hierarchy whose line of /proc/self/cgroup contains `key`.
   static std::filesystem::path OwnGroup(const std::string& key, const std::string& mount) {
     std::ifstream in("/proc/self/cgroup");
     for (std::string line; std::getline(in, line);) {

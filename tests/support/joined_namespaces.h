@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two hosts on one machine: the machine itself and a network namespace, joined by a veth pair. The
-// far side has its own addresses, ports and loopback, so it can be reached only over the link.
+// Two hosts on one machine: the machine itself (near) and a network namespace (far), connected by a
+// veth pair. The far host has its own addresses, ports and loopback, so it can be reached only over
+// the link.
 #pragma once
 
 #include <fmt/core.h>
@@ -35,11 +36,11 @@ class JoinedNamespaces {
   JoinedNamespaces(const JoinedNamespaces&) = delete;
   JoinedNamespaces& operator=(const JoinedNamespaces&) = delete;
 
-  // False if this machine does not allow it: not root, no `ip`, no namespaces.
+  // False if the namespace could not be made: not root, no `ip`, no namespaces.
   bool made() const { return made_; }
 
   std::string near_address() const { return Address(1); }
-  // Command prefix; one further word is a shell command for the far side.
+  // Command that executes a shell command on the far host. The shell command is one further word.
   std::vector<std::string> Shell() const { return {"ip", "netns", "exec", far_, "sh", "-c"}; }
 
   // Disconnects the far end of the link.

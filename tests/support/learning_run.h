@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Training runs whose results are compared with untrained policies. A learning test is meaningless
-// if no-op or random actions pass it.
+// if no-op or random actions also pass.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -19,12 +19,12 @@
 
 namespace shoal {
 
-// Figures of two untrained policies: zero actions, and uniform random actions. Members are those of
-// `aggregate` in eval/*.json.
+// Results of two untrained policies: zero actions, and uniform random actions. The members are
+// those of `aggregate` in eval/*.json.
 struct Untrained {
   nlohmann::json noop, random;
 
-  // Figure of the better policy.
+  // The result `figure` of the better policy.
   double Most(const char* figure) const {
     return std::max(noop.at(figure).get<double>(), random.at(figure).get<double>());
   }
@@ -50,7 +50,8 @@ struct LearningResult {
   nlohmann::json aggregate;  // of the final evaluation of the best checkpoint
 };
 
-// Trains with a preset; `keys` override its keys. The run must succeed with a balanced account.
+// Trains with a preset; `keys` override the preset's keys. The run must end without an error, and
+// the account of records must balance.
 inline LearningResult Learn(const std::string& preset,
                             const std::map<std::string, std::string>& keys,
                             std::chrono::seconds deadline) {
@@ -71,8 +72,8 @@ inline LearningResult Learn(const std::string& preset,
   return learned;
 }
 
-// The same with seed 1 and, unless the result is `enough`, again with seed 2. A single seed can
-// fail although the algorithm learns; a broken algorithm fails with both.
+// Trains with seed 1 and, unless the result is `enough`, again with seed 2. A single seed can fail
+// although the algorithm learns; a broken algorithm fails with both seeds.
 inline LearningResult LearnWithOneSeedOfTwo(
     const std::string& preset, std::map<std::string, std::string> keys,
     std::chrono::seconds deadline, const std::function<bool(const nlohmann::json&)>& enough) {
@@ -83,7 +84,8 @@ inline LearningResult LearnWithOneSeedOfTwo(
   return Learn(preset, keys, deadline);
 }
 
-// Trains on a task with goals. The final episodes succeed at least at the rate `least`.
+// Trains on a task with goals, with the second seed unless the success rate of the final evaluation
+// is at least `least`.
 inline LearningResult LearnGoals(const std::string& preset,
                                  const std::map<std::string, std::string>& keys, double least) {
   return LearnWithOneSeedOfTwo(preset, keys, std::chrono::seconds(280),
@@ -92,8 +94,8 @@ inline LearningResult LearnGoals(const std::string& preset,
                                });
 }
 
-// Expects that the final episodes succeed at least at this rate, and far more often than with
-// either untrained policy.
+// Expects that the success rate of the final evaluation is at least `least`, and exceeds the rates
+// of both untrained policies by far.
 inline void ExpectSuccess(const LearningResult& learned, const std::string& task, double least) {
   constexpr double kMargin = 0.5;
   const double rate = learned.aggregate.at("success_rate").get<double>();

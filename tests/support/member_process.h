@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A process that is a member of a run.
+// Processes that are members of a run.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,7 +13,8 @@
 
 namespace shoal {
 
-// A process that is a member of `run` until it is killed. Fails the test if it cannot join the run.
+// A process that is a member of `run` until the process is killed. Fails the test if the process
+// cannot join the run.
 class MemberProcess {
  public:
   explicit MemberProcess(const std::filesystem::path& run) {

@@ -40,7 +40,7 @@ class PageConnection {
   }
   void EndSending() const { shutdown(socket_.get(), SHUT_WR); }
 
-  // Reads until the server closes the connection. Fails the test if it does not.
+  // Reads until the server closes the connection. Fails the test if the server keeps it open.
   std::string Answer() const {
     std::string answer;
     const SteadyTime end = Now() + std::chrono::seconds(60);
@@ -60,7 +60,7 @@ class PageConnection {
   const Descriptor socket_;
 };
 
-// The complete answer to `request`, headers included.
+// The complete answer to `request`, including headers.
 inline std::string AskPage(uint16_t port, const std::string& request) {
   const PageConnection connection(port);
   connection.Send(request);

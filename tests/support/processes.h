@@ -18,7 +18,7 @@
 
 namespace shoal {
 
-// 'R', 'S', 'T' (stopped), 'Z' ...; empty if the process does not exist.
+// State of a process: 'R', 'S', 'T' (stopped), 'Z' ...; empty if the process does not exist.
 inline std::optional<char> ProcessState(pid_t pid) {
   std::ifstream in("/proc/" + std::to_string(pid) + "/stat");
   std::string stat;
@@ -51,7 +51,7 @@ inline std::vector<std::string> CommandLine(pid_t pid) {
   return words;
 }
 
-// 0 if the process does not exist.
+// Pid of the parent process; 0 if the process does not exist.
 inline pid_t ParentOf(pid_t pid) {
   std::ifstream in("/proc/" + std::to_string(pid) + "/status");
   for (std::string line; std::getline(in, line);) {
@@ -60,7 +60,7 @@ inline pid_t ParentOf(pid_t pid) {
   return 0;
 }
 
-// Children of the process, zombies included.
+// Children of the process, including zombies.
 inline std::vector<pid_t> ChildrenOf(pid_t parent) {
   std::vector<pid_t> children;
   std::error_code error;
@@ -73,7 +73,7 @@ inline std::vector<pid_t> ChildrenOf(pid_t parent) {
   return children;
 }
 
-// User and system time of a process.
+// User plus system time of a process, in seconds.
 inline double ProcessorSeconds(pid_t pid) {
   std::ifstream in("/proc/" + std::to_string(pid) + "/stat");
   std::string text;

@@ -21,7 +21,7 @@ struct ProgramResult {
   std::string out, err;
 };
 
-// command[0] is a path; `environment` is added to the test's own environment.
+// Runs a command. command[0] is a path; `environment` is added to the test's environment.
 inline ProgramResult RunCommand(std::vector<std::string> command, std::chrono::seconds deadline,
                                 std::vector<std::pair<std::string, std::string>> environment = {}) {
   const TemporaryFolder folder;
@@ -40,7 +40,7 @@ inline ProgramResult RunCommand(std::vector<std::string> command, std::chrono::s
   return result;
 }
 
-// command[0] is a program's name in the build's bin folder.
+// Runs a program. command[0] is the program's name in the build's bin folder.
 inline ProgramResult RunProgram(std::vector<std::string> command, std::chrono::seconds deadline) {
   command[0] = ProgramPath(command[0]);
   return RunCommand(std::move(command), deadline);

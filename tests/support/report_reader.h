@@ -18,14 +18,14 @@ class ReportReader {
  public:
   explicit ReportReader(const std::filesystem::path& run) : file_(run / "metrics.jsonl") {}
 
-  // Skips the present contents of the file: reports of an earlier session of the run.
+  // Skips the present content of the file: reports of an earlier session of the run.
   void SkipOld() {
     std::error_code none_yet;
     const auto size = std::filesystem::file_size(file_, none_yet);
     if (!none_yet) offset_ = static_cast<std::streamoff>(size);
   }
 
-  // The newest report of the role's process `id`; null if there is none yet.
+  // The newest report of the role's process `id`; null if there is no report yet.
   const nlohmann::json& Last(const std::string& role, int id = 0) {
     ReadOn();
     return last_[{role, id}];
@@ -35,7 +35,8 @@ class ReportReader {
     return WaitFor(
         role, [](const auto&) { return true; }, std::chrono::seconds(60), id);
   }
-  // Polls until there is a report and done(newest report) is true; null at `deadline`.
+  // Polls until there is a report and done(newest report) is true. Returns the report; null at the
+  // deadline.
   template <class Done>
   nlohmann::json WaitFor(const std::string& role, Done done,
                          std::chrono::seconds deadline = std::chrono::seconds(60), int id = 0) {

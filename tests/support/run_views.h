@@ -24,8 +24,8 @@ inline ProgramResult RunShoal(const TrainingRun& run, std::vector<std::string> w
   return RunProgram(words, deadline);
 }
 
-// Polls `shoal top --once --json` until `done` holds for the view. Fails the test and returns null
-// at the deadline.
+// Polls `shoal top --once --json` until done(view) is true. At the deadline, fails the test and
+// returns null.
 template <class Done>
 nlohmann::json WaitForView(const TrainingRun& run, Done done,
                            std::chrono::seconds deadline = std::chrono::seconds(90)) {
@@ -42,7 +42,7 @@ nlohmann::json WaitForView(const TrainingRun& run, Done done,
   return {};
 }
 
-// The process of a role in a view; null if there is none.
+// The report of the role's process `id` in a view; null if there is none.
 inline nlohmann::json ProcessOf(const nlohmann::json& view, const std::string& role, int id = 0) {
   for (const nlohmann::json& process : view.at("processes")) {
     if (process.at("role") == role && process.at("id") == id) return process;
@@ -50,7 +50,8 @@ inline nlohmann::json ProcessOf(const nlohmann::json& view, const std::string& r
   return {};
 }
 
-// Condition for WaitForView: more than 50 updates, with batches of known policy versions.
+// Condition for WaitForView: more than 50 updates have been made, and the replay reports the policy
+// lag.
 inline bool Learns(const nlohmann::json& view) {
   const nlohmann::json learner = ProcessOf(view, "learner");
   return learner.is_object() && learner.value("updates", 0.0) > 50 &&

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A training run of the real programs that a test disturbs while it is running.
+// A training run of the real programs, which a test disturbs while the run is running.
 #pragma once
 
 #include <chrono>
@@ -21,7 +21,7 @@ class RunningTraining {
  public:
   using Environment = std::vector<std::pair<std::string, std::string>>;
 
-  // Starts `shoal train` with the words of TrainingRun::Command or of a resume.
+  // Starts `shoal train`. `command`: words from TrainingRun::Command, or the words of a resume.
   RunningTraining(const TrainingRun& run, std::vector<std::string> command,
                   const Environment& environment = {})
       : run_(run),
@@ -45,8 +45,8 @@ class RunningTraining {
 
   // Sends Ctrl-C.
   void Interrupt() { child_.Signal(SIGINT); }
-  // Waits for the end. Returns the exit code as in a shell (kInterruptedExit after Interrupt), or
-  // -1 if the run was killed (SIGKILL) or did not end.
+  // Waits for the run's end. Returns the exit code in the form of shells (kInterruptedExit after
+  // Interrupt), or -1 if the run was killed (SIGKILL) or did not end.
   int End(std::chrono::seconds deadline) {
     const SteadyTime end = Now() + deadline;
     while (Now() < end) {

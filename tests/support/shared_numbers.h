@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers that both sides of a comparison compute, so that recordings need not contain them. Must
-// equal tests/comparison/shared_numbers.py.
+// Numbers that both sides of a comparison compute, so that recordings need not contain the numbers.
+// The functions must give the same numbers as tests/comparison/shared_numbers.py.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ inline std::vector<double> SharedUniform(const std::string& name, size_t count) 
   return numbers;
 }
 
-// Numbers in [-scale, scale), rounded to f32 once.
+// Fills `out` with numbers in [-scale, scale), rounded to f32 once.
 template <class Out>
 void FillSymmetric(const std::string& name, double scale, Out&& out) {
   const std::vector<double> numbers = SharedUniform(name, out.size());
@@ -34,7 +34,7 @@ void FillSymmetric(const std::string& name, double scale, Out&& out) {
                          [&](double u) { return float((2 * u - 1) * scale); });
 }
 
-// Numbers in 0..255.
+// Fills `out` with numbers in 0..255.
 template <class Out>
 void FillBytes(const std::string& name, Out&& out) {
   const std::vector<double> numbers = SharedUniform(name, out.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A fresh folder that is removed with everything in it at the end of the test.
+// A new folder, which the destructor removes with its content.
 #pragma once
 
 #include <filesystem>

@@ -23,10 +23,10 @@ namespace shoal {
 
 class TerminalProgram {
  public:
-  // command[0] is a program's name in the build's bin folder. `kind`: TERM.
+  // command[0] is a program's name in the build's bin folder. `kind`: value of TERM.
   explicit TerminalProgram(const std::vector<std::string>& command, const char* kind = "xterm")
       : TerminalProgram(ProgramPath(command[0]), {command.begin() + 1, command.end()}, kind) {}
-  // `program`: a path.
+  // `program`: path of the program.
   TerminalProgram(const std::string& program, const std::vector<std::string>& arguments,
                   const char* kind = "xterm") {
     winsize size{.ws_row = 24, .ws_col = 100, .ws_xpixel = 0, .ws_ypixel = 0};
@@ -60,7 +60,8 @@ class TerminalProgram {
   }
   void Signal(int signal) { kill(pid_, signal); }
 
-  // Reads until `text` has been shown after the last call. Returns false at the deadline.
+  // Reads until `text` appears after the text that the last call found. Returns false at the
+  // deadline.
   bool WaitFor(const std::string& text, std::chrono::seconds deadline) {
     const SteadyTime end = Now() + deadline;
     while (Now() < end) {
@@ -75,8 +76,8 @@ class TerminalProgram {
   }
   const std::string& shown() const { return shown_; }
 
-  // The exit code as in a shell, 128 + number of the signal that killed the program; -1 at the
-  // deadline.
+  // The exit code in the form of shells: 128 + the signal's number if a signal killed the program.
+  // -1 at the deadline.
   int End(std::chrono::seconds deadline) {
     const SteadyTime end = Now() + deadline;
     int status = 0;
@@ -88,7 +89,7 @@ class TerminalProgram {
     }
     return -1;
   }
-  // Whether the terminal's settings are the same as before the program.
+  // Whether the terminal's settings are the same as before the program's start.
   bool LeftAsItWas() const {
     termios now{};
     tcgetattr(its_end_, &now);

@@ -7,7 +7,7 @@
 
 namespace shoal {
 
-// The definition of the experiment; `more` overrides its members.
+// The definition of the experiment; `more` replaces members of the definition.
 inline nlohmann::json TinyExperiment(const nlohmann::json& more = nlohmann::json::object(),
                                      int64_t env_steps = 1200) {
   using nlohmann::json;

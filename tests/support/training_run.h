@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A small state-based training run of the real programs in a folder of its own, for integration
-// tests.
+// A small state-based training run of the real programs in its own folder, for integration tests.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,7 +19,7 @@ class TrainingRun {
  public:
   using Keys = std::map<std::string, std::string>;
 
-  // Keys of a run from pixels that ends within seconds; `keys` override them.
+  // Keys of a run from pixels that ends within seconds; `keys` override these keys.
   static Keys FromPixels(const Keys& keys = {}) {
     Keys all{{"observation.pixels", "true"},
              {"env_steps", "400"},
@@ -35,8 +34,8 @@ class TrainingRun {
     return all;
   }
 
-  // Command line of `shoal train` for a short run. The run is from state unless `flags`, which are
-  // appended, name another preset. `keys` override the defaults.
+  // Command line of `shoal train` for a short run. `flags` are appended. The run is from state
+  // unless `flags` name another preset. `keys` override the keys of the run.
   std::vector<std::string> Command(const Keys& keys = {},
                                    const std::vector<std::string>& flags = {}) const {
     Keys all{{"env_steps", "4000"},        {"eval.episodes", "8"},
@@ -48,7 +47,7 @@ class TrainingRun {
     return CommandOf(named ? "" : "fetch-reach-state", all, flags);
   }
 
-  // The same for a run of PPO, which has no replay.
+  // Command line of `shoal train` for a short run of PPO, which has no replay.
   std::vector<std::string> OnPolicyCommand(const Keys& keys = {},
                                            const std::vector<std::string>& flags = {}) const {
     Keys all{{"eval.episodes", "8"},    {"eval.final_episodes", "0"},
@@ -86,7 +85,7 @@ class TrainingRun {
   TemporaryFolder folder_;
 };
 
-// learner.safetensors of the newest checkpoint.
+// Content of learner.safetensors of the newest checkpoint.
 inline std::string NewestLearnerState(const TrainingRun& run) {
   std::filesystem::path newest;
   for (const auto& entry : std::filesystem::directory_iterator(run.path() / "checkpoints")) {
@@ -95,8 +94,8 @@ inline std::string NewestLearnerState(const TrainingRun& run) {
   return ReadFile(newest / "learner.safetensors");
 }
 
-// made = stored + lost with a killed actor + lost with a replay + rejected + after gap + discarded,
-// exactly.
+// Expects exactly made = stored + lost with a killed actor + lost with a replay + rejected + after
+// gap + discarded.
 inline void ExpectBalanced(const nlohmann::json& meta) {
   const auto& a = meta.at("accounting");
   EXPECT_GT(a.at("made").get<int64_t>(), 0);

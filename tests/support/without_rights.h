@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes a folder unreadable for this process until destruction, also if tests run as root.
+// Makes a folder unreadable for this process until destruction, even if tests run as root.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -12,7 +12,8 @@ namespace shoal {
 
 class WithoutRights {
  public:
-  // Removes all permissions of `folder`; its parent remains readable.
+  // Removes all permissions of `folder` and makes its parent readable for all users. If the process
+  // runs as root, it also becomes an unprivileged user.
   explicit WithoutRights(std::filesystem::path folder)
       : folder_(std::move(folder)),
         above_(folder_.parent_path()),

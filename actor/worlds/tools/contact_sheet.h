@@ -24,10 +24,10 @@ struct ContactSheetTile {
 using ContactSheetRows = std::vector<std::vector<ContactSheetTile>>;
 
 // Plans the tiles of all tasks: one row per physics half, in the order of registration. A row has
-// the cameras, each in quality fast and then reference.
+// two tiles for each camera: quality fast, then reference.
 ContactSheetRows PlanContactSheet();
 
-// Draws the sheet. Throws Error (kUsage) on a side that is not 16..1024.
+// Draws the sheet. Throws Error (kUsage) if the side is not 16..1024.
 Picture DrawContactSheet(const ContactSheetRows& rows, const ContactSheetRequest& request);
 
 }  // namespace shoal::worlds

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measured range of each number of a task during play, and the numbers that never changed. The
-// usual cause of a constant number is that the physics half does not write it, or writes it to
-// another place.
+// Measured range of each number of a task during play, and the numbers that never changed. If a
+// number never changes, the physics half usually does not write the number, or writes it to another
+// place.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -41,8 +41,9 @@ struct ConstantNumber {
   double value = 0;
 };
 
-// The numbers that had the same value in all observations, if there were at least two. Desired
-// goals are constant within an episode, so their numbers are included from two episodes on.
+// The numbers that had the same value in all observations; empty if there are fewer than two
+// observations. Desired goals are constant within an episode, so their numbers are only included if
+// two or more episodes were played.
 std::vector<ConstantNumber> ConstantNumbers(const tasks::Task& task, const RangeMeter& meter);
 
 // The warnings as text, one line for each number.

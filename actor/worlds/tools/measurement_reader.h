@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strict reader of JSON files with measurements. Errors name a missing or ill-typed value by its
-// path of keys.
+// Strict reader of JSON files with measurements. Errors name the keys that lead to a missing or
+// ill-typed value.
 #pragma once
 
 #include <algorithm>

@@ -15,8 +15,8 @@ struct Deviation {
   std::string quantity;  // "grip_position"
   std::string unit;      // of the difference: "m"; empty = dimensionless or mixed
   double largest = 0;
-  int at_step = 0;       // env step where it occurs, 0 = reset
-  double tolerance = 0;  // largest allowed value; 0 = for information, not judged
+  int at_step = 0;       // env step of the largest difference, 0 = reset
+  double tolerance = 0;  // largest allowed value; 0 = any value passes
 
   bool Passed() const { return tolerance == 0 || largest <= tolerance; }
 };
@@ -31,14 +31,14 @@ struct ReplayReport {
   // Steps with a different sparse reward or success flag although the reference's distance differs
   // from the threshold by more than the tolerance.
   int reward_mismatches = 0, success_mismatches = 0;
-  int contact_mismatches = 0;  // reset and steps with a different number of contacts; not judged
+  int contact_mismatches = 0;      // reset and steps with another number of contacts; not judged
   int termination_mismatches = 0;  // steps that terminate only in Shoal or only in the reference
-  // First env step from which the object, and quantities that depend on the object, are not judged
-  // (Slide: the puck's first hit); 0 = judged to the end.
+  // Env step of the first hit on Slide's puck. From this step on, the object, and quantities that
+  // depend on the object, are not judged. 0 = all steps are judged.
   int chaotic_from = 0;
   bool passed = false;
 
-  // Records the difference of two vectors of the same size at an env step.
+  // Adds the difference of two vectors of the same size at an env step.
   void Compare(const std::string& quantity, const std::string& unit, double judged_by,
                std::span<const double> ours, std::span<const double> theirs, int step);
   // Sets `passed` from the other members.

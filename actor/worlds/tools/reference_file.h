@@ -17,7 +17,7 @@ constexpr const char* kReferenceFormat = "vrl-ref-1";
 struct ReferenceState {
   std::vector<double> observation;  // (10) Reach, (25) with an object
   std::array<double, 3> achieved_goal{};
-  std::vector<double> qpos, qvel;  // joints in the order of joint_names, a free joint's 7 and 6
+  std::vector<double> qpos, qvel;  // in the order of joint_names; a free joint has 7 and 6 numbers
   std::array<double, 4> grip_quaternion{};
   int contacts = 0;
 };
@@ -45,8 +45,9 @@ struct ReferenceTrajectory {
 };
 
 // Reads a trajectory. Throws Error naming the file and the key if the file is unreadable, is not
-// JSON or has another format; if the environment cannot be replayed (naming the supported ones); or
-// if a value is missing, ill-typed, of the wrong length, not finite or (actions) outside [-1, 1].
+// JSON or has another format; if the environment cannot be replayed (the message lists the
+// supported environments); or if a value is missing, ill-typed, of the wrong length, not finite or
+// (for actions) outside [-1, 1].
 ReferenceTrajectory ReadReference(const std::filesystem::path& path);
 
 }  // namespace shoal::worlds

@@ -19,20 +19,20 @@ struct Picture {
 
 struct RenderRequest {
   std::string task;    // "FetchReachDense"
-  std::string camera;  // "front"; empty = the task's first
+  std::string camera;  // "front"; empty = the task's first camera
   int width = 480, height = 480;
   std::string quality = "reference";               // fast | native | reference
-  PainterOutput output = PainterOutput::kColours;  // others in quality native alone
-  bool goal = false;  // draws the goal picture of observation.goal_mode = image
-  int env_steps = 0;  // uniform random actions before the picture, at most an episode's
+  PainterOutput output = PainterOutput::kColours;  // other outputs: only in quality native
+  bool goal = false;  // true: draws the goal picture of observation.goal_mode = image
+  int env_steps = 0;  // number of random steps before the picture, at most an episode's length
   int64_t seed = 1;   // of the goal and of the actions
   std::string model;  // path of another MJCF file; empty = the built-in model
 };
 
 // Draws the picture. Throws Error (kUsage) on an unknown task, camera or quality, an output that
 // the quality does not have, a size that is not 1..4096, more env steps than an episode has, a goal
-// picture of a task that has none, or a goal picture after steps. Throws Error (kRuntime) if the
-// task terminates the episode earlier.
+// picture of a task without goal pictures, or a goal picture after steps. Throws Error (kRuntime)
+// if the task terminates the episode earlier.
 Picture RenderTask(const RenderRequest& request);
 
 }  // namespace shoal::worlds

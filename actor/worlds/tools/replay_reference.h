@@ -17,9 +17,10 @@ struct ReplayOptions {
   std::string physics;  // empty = the file's physics: mujoco2 for trajectories
 };
 
-// Replays a file. The tolerance is 1e-5 m. It is 1e-3 m for const_z_close and 1e-2 m for const_y,
-// where the arm folds onto itself and hulls of stand-in shapes touch. Positions, distances and
-// dense rewards are judged; velocities, angles and joint coordinates are only reported.
+// Replays a file. The tolerance is 1e-5 m. For two action sequences the tolerance is larger,
+// because the arm folds onto itself and hulls of stand-in shapes touch: 1e-3 m for const_z_close
+// and 1e-2 m for const_y. Positions, distances and dense rewards are judged; velocities, angles and
+// joint coordinates are only reported.
 //
 // Slide's puck is judged until its first hit: the first step after which the puck's linear speed in
 // the reference exceeds 0.01 m/s. (A puck at rest trembles at 0.001 to 0.002 m/s; a hit gives 0.1

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Check of a task's rewards. Plays random actions and compares for each step: the reward of the
-// step, the goal half's reward for the goals of the step's record, and the documented formula. Then
-// compares the last two for substituted goals, as hindsight uses them.
+// Check of a task's rewards. Plays random actions and compares three rewards for each step: the
+// reward of the step, the goal half's reward for the goals of the step's record, and the reward by
+// the documented formula. Then compares the last two rewards for substituted goals, as in
+// hindsight.
 #pragma once
 
 #include <cstdint>
@@ -32,13 +33,13 @@ struct RewardCheck {
   int relabelled = 0;  // rewards computed for other goals
   float reward_low = 0, reward_high = 0, reward_sum = 0;
   int successes = 0;  // steps that ended in success
-  // Mismatches:
-  int step_computed = 0;     // step's reward, goal half
-  int computed_formula = 0;  // goal half, formula
-  int relabelled_formula = 0;
-  int success_formula = 0;  // step's success flag, distance < threshold
-  int repeated = 0;         // step's reward, the same step of a second rollout
-  // Warning, not a mismatch: numbers that never changed, and the number of observations.
+  // Numbers of mismatches between the two named rewards or flags:
+  int step_computed = 0;       // step's reward, goal half's reward
+  int computed_formula = 0;    // goal half's reward, formula's reward
+  int relabelled_formula = 0;  // the same for substituted goals
+  int success_formula = 0;     // step's success flag, distance < threshold
+  int repeated = 0;            // step's reward, the same step of a second rollout
+  // Numbers that never changed (a warning, not a mismatch), and the number of observations.
   std::vector<ConstantNumber> constant{};
   int observations = 0;
 
@@ -47,7 +48,7 @@ struct RewardCheck {
   }
 };
 
-// Goals of one step from its record, and the result of the step.
+// Goals of one step, from the step's record, and the result of the step.
 struct RewardSample {
   std::vector<float> achieved, desired;
   int episode = 0;  // number of the episode within the samples
@@ -58,7 +59,7 @@ struct RewardSample {
 RewardCheck CompareRewards(const tasks::Task& task, const std::vector<RewardSample>& samples,
                            int relabels, int64_t seed);
 
-// Runs the check. Throws Error (kUsage) on an unknown task, listing the known ones.
+// Runs the check. Throws Error (kUsage) on an unknown task; the message lists the known tasks.
 RewardCheck CheckRewards(const RewardCheckRequest& request);
 
 // Schema shoal-reward-check-1.

@@ -11,7 +11,7 @@
 
 namespace shoal::worlds {
 
-// Share of the pixels that differ. CHECK on pictures of different size.
+// Share of the pixels that differ, 0..1. CHECK: the pictures have the same size.
 double ChangedShare(const Picture& a, const Picture& b);
 
 // Share of a camera's pixels that show the robot, 0..1: the pixels that change when the geoms of

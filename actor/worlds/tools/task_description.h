@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Description of a task, as text and JSON: its numbers with units, meaning and bounds, the effects
-// of its actions, its reward and its cameras. The task's goal half declares the facts; ranges and
-// effects of actions are measured in its physics half.
+// of its actions, its reward and its cameras. The task's goal half declares most of this; ranges
+// and effects of actions are measured in the task's physics half.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +15,9 @@
 
 namespace shoal::worlds {
 
-// The effect of one action component: each number of the state vector after `env_steps` steps of
-// `command` along this axis alone, minus the number after as many steps without action from the
-// same start.
+// The effect of one action component. `change`: each number of the state vector after `env_steps`
+// steps in which only component `axis` acts, with value `command`, minus the number after as many
+// steps of zero action from the same start.
 struct AxisProbe {
   int axis = 0;
   double command = 0;  // -1 or 1
@@ -28,7 +28,7 @@ struct AxisProbe {
 struct TaskDescription {
   const tasks::Task* task = nullptr;
   double env_step_seconds = 0;  // simulated, with the task's own action repeat
-  std::string fingerprint;      // of the model
+  std::string fingerprint;      // model fingerprint
   std::vector<CameraView> cameras;
   int random_env_steps = 0;  // env steps in which the ranges were measured
   // One per number of the observation, the achieved and the desired goal.
@@ -46,7 +46,7 @@ struct DescribeRequest {
   int64_t seed = 1;
 };
 
-// Describes a task. Throws Error (kUsage) on an unknown task, listing the known ones.
+// Describes a task. Throws Error (kUsage) on an unknown task; the message lists the known tasks.
 TaskDescription DescribeTask(const DescribeRequest& request);
 
 // Schema shoal-env-1. Infinite bounds are null.

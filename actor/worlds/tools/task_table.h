@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Table of the registered tasks. Reads only the goal halves: no physics is loaded.
+// Table of the registered tasks. Reads only the goal halves; no physics is loaded.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One episode as Minari lays it out in an HDF5 file: T steps, T + 1 observations.
+// One episode in Minari's layout of an HDF5 file: T steps, T + 1 observations.
 //
 //   episode_N/                    attributes id = N, total_steps = T, env, episode (in the run)
 //     observations/BLOCK          (T+1, size) f32: each recorded block, observed or not
@@ -24,8 +24,8 @@ namespace shoal::launch {
 void CheckArrayNames(const ObservationSpec& spec);
 
 // Writes episode `number`. `records`: the records of the episode one after the other, first the
-// reset, then at least one step; RecordLayout(spec).record_bytes() each, aligned to 8. Throws Error
-// as Hdf5File does.
+// reset, then at least one step. Each record has RecordLayout(spec).record_bytes() bytes and is
+// aligned to 8. Throws the errors of Hdf5File.
 void WriteEpisode(const ObservationSpec& spec, std::span<const uint8_t> records, uint64_t number,
                   Hdf5File* file);
 

@@ -15,8 +15,8 @@ constexpr char kSummarySchema[] = "shoal-experiment-1";
 
 // Values of a summary's n_to_target_rule. `together`: the first consecutive evaluations whose
 // pooled episodes reach the target (launch/record/first_reached.h). `each`: the first two
-// consecutive evaluations that both reach the target; older builds, whose summaries name no rule,
-// used this one.
+// consecutive evaluations that both reach the target. Older builds, whose summaries name no rule,
+// used the rule `each`.
 constexpr char kReachedTogether[] = "together", kReachedByEach[] = "each";
 
 // Sets `success`, `return` and `final_distance` of an arm's object.

@@ -26,22 +26,22 @@ struct Arm {
 };
 
 struct Definition {
-  std::string name{};      // "name", else the file's stem; usable as a file name
+  std::string name{};      // "name", else the file's name without extension; a valid file name
   std::string base{};      // preset
   std::string question{};  // the question of the experiment; may be empty
-  nlohmann::ordered_json set = nlohmann::ordered_json::object();  // of every arm
-  std::vector<Arm> arms{};                                        // ratios refer to the first one
+  nlohmann::ordered_json set = nlohmann::ordered_json::object();  // keys set in every arm
+  std::vector<Arm> arms{};                                        // ratios refer to the first arm
   std::vector<int64_t> seeds{};                                   // unique
-  std::optional<int> final_episodes{};  // eval.final_episodes of every run; empty = the preset's
+  std::optional<int> final_episodes{};  // eval.final_episodes of the runs; empty = as in the preset
   double target_success = 0.9;          // n_to_target counts the env steps to this success rate
-  std::vector<std::string> transfer{};  // further tasks that each finished run is evaluated on
+  std::vector<std::string> transfer{};  // further tasks on which each finished run is evaluated
 };
 
-// Throws Error (usage) naming the file and the member: unknown, missing or ill-typed members, names
-// that are not valid file names or occur twice.
+// Throws Error (usage) naming the file and the member if a member is unknown, missing or ill-typed,
+// or if a name is not a valid file name or occurs twice.
 Definition ReadDefinition(const std::filesystem::path& file);
-// Reads a definition from JSON. `source` names the JSON in errors; `stem` is the name if the JSON
-// has none.
+// Reads a definition from JSON. `source` names the JSON in errors; `stem` is the definition's name
+// if the JSON has no name.
 Definition ParseDefinition(const nlohmann::ordered_json& object, const std::string& source,
                            const std::string& stem);
 nlohmann::ordered_json ToJson(const Definition& definition);
@@ -51,21 +51,20 @@ nlohmann::ordered_json ToJson(const Definition& definition);
 std::filesystem::path FindDefinition(const std::string& file_or_name);
 std::vector<std::string> ListDefinitions();  // sorted
 
-// The preset with the definition's own `set` and final_episodes applied. `defaults` ("KEY=VALUE")
-// apply to keys that neither of them sets. Throws Error (usage) naming `source` if the preset is
-// unknown or a key is refused.
+// The preset with the definition's `set` and final_episodes applied. `defaults` ("KEY=VALUE") apply
+// to keys that neither the preset nor the definition sets. Throws Error (usage) naming `source` if
+// the preset is unknown or a key is refused.
 Config ResolveBase(const Definition& definition, const std::string& source,
                    const std::vector<std::string>& defaults = {});
 
-// The base with the arm's differences; the seed is set for each run. Refuses a configuration that
-// no run could start with, by the configuration's key table: unknown, ill-typed or out-of-range
-// keys, keys that the experiment itself sets, combinations that contradict each other, an unknown
-// task, a Python environment other than the base's. Throws Error (usage) naming `source` and the
-// arm.
+// The base with the arm's differences; the seed is set for each run. Throws Error (usage) naming
+// `source` and the arm if no run could start with this configuration: unknown, ill-typed or
+// out-of-range keys, keys that the experiment itself sets, combinations that contradict each other,
+// an unknown task, a Python environment other than that of the base.
 Config ArmConfig(const Config& base, const Arm& arm, const std::string& source);
 
-// Refuses unknown tasks in `transfer`. Tasks of the user's own are known only after an arm's
-// configuration has been resolved. Throws Error (usage) naming `source`.
+// Throws Error (usage) naming `source` if `transfer` contains an unknown task. Call it after an
+// arm's configuration has been resolved, because a user's tasks are not known earlier.
 void CheckTransfer(const Definition& definition, const std::string& source);
 
 }  // namespace shoal::launch

@@ -24,7 +24,7 @@
 namespace shoal::launch {
 
 struct ExperimentRun {
-  size_t arm = 0;  // in the definition
+  size_t arm = 0;  // index in the definition
   int64_t seed = 0;
   std::string name{};              // ARM-sSEED
   std::filesystem::path folder{};  // of the run
@@ -37,13 +37,13 @@ struct StoredExperiment {
   Config base{};
   std::string created{};  // UTC
 
-  // All arms of one seed, then of the next seed: an experiment that is stopped early then has
-  // complete comparisons.
+  // Runs ordered by seed, then by arm, so that an experiment that is stopped early has complete
+  // comparisons.
   std::vector<ExperimentRun> Runs(const std::vector<int64_t>& seeds) const;
   // The run named "ARM-sSEED", for any seed; empty if there is no such arm.
   std::optional<ExperimentRun> RunNamed(const std::string& name) const;
-  // Runs of every seed that the definition names, and of every other seed with a run in the folder
-  // or, if the run failed before it had a folder, in the log. Throws Error on a broken log.
+  // Runs of every seed of the definition, and of every other seed that has a run in the folder or
+  // in the log (a run may fail before its folder exists). Throws Error if the log is broken.
   std::vector<ExperimentRun> Runs() const;
   // Status of a run, including its evaluations on further tasks. `log`: result of Log().Read().
   StandingReport Standing(const ExperimentRun& run,
@@ -52,15 +52,15 @@ struct StoredExperiment {
   RunLog Log() const { return RunLog(folder / "runs.jsonl"); }
 };
 
-// Reads the experiment. Throws Error: experiment.json is missing or broken.
+// Reads the experiment. Throws Error if experiment.json is missing or broken.
 StoredExperiment ReadExperiment(const std::filesystem::path& folder);
 
-// Experiments as arguments of commands: by name within `dir`, or by folder (FindNamed).
+// The kind of folder with which FindNamed finds experiments: by name within `dir`, or by path.
 NamedKind ExperimentsIn(const std::filesystem::path& dir = "experiments");
 // Whether the folder holds an experiment.
 bool IsExperiment(const std::filesystem::path& folder);
 
-// An experiment that may be run: every arm and the folder have been checked.
+// An experiment that may be executed: every arm and the folder have been checked.
 struct ExperimentPlan {
   StoredExperiment experiment{};  // with the requested definition
   std::vector<Config> arms{};     // resolved, in the order of the definition
@@ -68,18 +68,19 @@ struct ExperimentPlan {
 };
 
 // Checks the arms and the folder; writes nothing. Throws Error (usage) if an arm or a further task
-// is refused, if the folder holds something other than an experiment, or if it holds an
+// is refused, if the folder holds something other than an experiment, or if the folder holds an
 // incompatible experiment: another name, base, `set`, final_episodes or first arm, an arm of the
-// same name with other keys, or an arm that the definition no longer has. Other differences replace
-// the stored values.
+// same name with other keys, or an arm that the definition no longer has. If other members differ,
+// the new values replace the stored values.
 ExperimentPlan PlanExperiment(const std::filesystem::path& folder, const Definition& definition,
                               const std::string& source);
 
 // Locks an experiment against a second command, until destruction or the death of the process.
 class ExperimentFolder {
  public:
-  // Makes the folder, or opens the existing one. Throws Error (usage), before anything else is
-  // written, if another process runs the experiment or has changed it since the plan.
+  // Creates the folder, or opens the existing folder. Throws Error (usage), before any other file
+  // is written, if another process executes the experiment or has changed the experiment since the
+  // plan was made.
   explicit ExperimentFolder(const ExperimentPlan& plan);
 
   const StoredExperiment& experiment() const { return experiment_; }
@@ -89,12 +90,12 @@ class ExperimentFolder {
   std::optional<FileLock> lock_;
 };
 
-// Shared lock on an experiment: processes on any host may execute single runs at the same time,
-// while a command that runs the whole experiment is locked out.
+// Shared lock on an experiment. Processes on any host may execute single runs at the same time, but
+// no command may execute the whole experiment during this time.
 class ExperimentShare {
  public:
-  // Waits up to a minute for the command that submits such runs. Throws Error (usage): there is no
-  // experiment in the folder, or a command runs the whole experiment.
+  // Waits up to a minute for the command that submits such runs. Throws Error (usage) if there is
+  // no experiment in the folder, or if a command executes the whole experiment.
   explicit ExperimentShare(const std::filesystem::path& folder);
 
   const StoredExperiment& experiment() const { return experiment_; }
@@ -104,7 +105,7 @@ class ExperimentShare {
   StoredExperiment experiment_;
 };
 
-// Whether a process runs the experiment of this folder, or a single run of the experiment.
+// Whether a process executes the experiment of this folder, or a single run of the experiment.
 bool IsExperimentHeld(const std::filesystem::path& folder);
 
 }  // namespace shoal::launch

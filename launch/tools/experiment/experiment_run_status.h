@@ -16,7 +16,7 @@ enum class ExperimentRunStatus {
   kRunning,      // a coordinator holds the run
   kInterrupted,  // stopped, or its processes died; --resume continues
   kFailed,       // ended by itself with an error
-  kFinished,     // target reached or budget spent, evaluated at the end and on every further task
+  kFinished,     // target reached or budget spent; all final evaluations are done
 };
 const char* ToString(ExperimentRunStatus standing);
 
@@ -28,10 +28,10 @@ struct StandingReport {
   std::vector<std::string> missing_transfers{};
 };
 
-// Status from the run's folder, its entries in the experiment's log (null: none) and the further
-// tasks: a run is not finished before it is evaluated on all of them. The task of the training is
-// left out, unless training randomised its masses. Never throws because of the folder's content: a
-// broken file makes the run failed.
+// Status from the run's folder and from its entries in the experiment's log (null: none).
+// `transfer`: further tasks; a run is finished only after it has been evaluated on all of them. The
+// training task needs no such evaluation, unless training randomised its masses. Never throws
+// because of the folder's content: a broken file gives the status kFailed.
 StandingReport StandingOf(const std::filesystem::path& run, const LoggedRun* logged,
                           const std::vector<std::string>& transfer = {});
 

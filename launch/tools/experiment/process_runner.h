@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Executes the runs of an experiment: a process tree of `shoal train` for each run, then the
+// Executes the runs of an experiment: for each run the processes of `shoal train`, then the
 // evaluations on further tasks.
 #pragma once
 
@@ -11,17 +11,19 @@
 
 namespace shoal::launch {
 
-// Divides `cores` into `jobs` parts of neighbouring CPUs; the first parts get one more if the
-// division leaves a remainder. Throws Error (usage) if there are fewer CPUs than jobs.
+// Divides `cores` into `jobs` parts of neighbouring CPUs. If there is a remainder, the first parts
+// get one more CPU each. Throws Error (usage) if there are fewer CPUs than jobs.
 std::vector<std::vector<int>> SplitCores(const std::vector<int>& cores, int jobs);
-// The CPUs that this process may run on, at most as many as the cgroups grant time for.
+// The CPUs on which this process may run. If the cgroups grant less CPU time, correspondingly
+// fewer.
 std::vector<int> OwnCores();
 
 // One thread, which must live as long as the children (child_process.h).
 class ProcessRunner : public RunKeeper {
  public:
-  // Borrows the experiment. With several jobs, the runs of a slot use only the cores of its part.
-  // `side_by_side`: runs that may execute at the same time, including those of other keepers.
+  // Borrows the experiment. If there are several jobs, the runs of a slot use only the cores of one
+  // part (SplitCores). `side_by_side`: number of runs that may execute at the same time, including
+  // the runs of other processes.
   ProcessRunner(const StoredExperiment& experiment, int jobs, int side_by_side);
 
   StandingReport Standing(const ExperimentRun& run) override;
@@ -36,9 +38,9 @@ class ProcessRunner : public RunKeeper {
     std::optional<ChildProcess> process;
   };
 
-  // The process of the training, without the cores.
+  // Describes the process of the training, without the cores.
   ProcessSpec Training(const ExperimentRun& run) const;
-  // The process of the evaluation on a further task, without the cores.
+  // Describes the process of the evaluation on a further task, without the cores.
   ProcessSpec Transfer(const ExperimentRun& run, const std::string& task) const;
   void Launch(ProcessSpec spec, Slot& slot);
   void LogEnding(const ExperimentRun& run, const ExitStatus& status) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `shoal experiment run`, status and summary.
+// The commands `shoal experiment run` and `shoal experiment task`.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,11 @@
 namespace shoal::launch {
 
 struct ExperimentOptions {
-  std::string definition;         // file, or name of one in launch/data/experiments
-  std::vector<int64_t> seeds;     // empty = the definition's
+  std::string definition;         // file, or name of a definition in launch/data/experiments
+  std::vector<int64_t> seeds;     // empty = the definition's seeds
   std::vector<std::string> arms;  // by name; empty = all
-  // Runs at the same time, each with cores of its own (default 1); for a job array, tasks at a time
-  // (default: all).
+  // Number of runs at the same time, each with its own cores (1 if empty); for a job array, number
+  // of tasks at a time (all if empty).
   std::optional<int> jobs;
   std::string out;  // folder; empty = experiments/NAME
   bool retry_failed = false;
@@ -36,13 +36,14 @@ struct ExperimentTask {
 // every run is finished, 1 if not, kInterruptedExit (stop.h) after Ctrl-C. Throws Error, before
 // anything is written, if the definition, the folder or an arm is refused.
 //
-// If --slurm is given, submits a job array instead and writes one line of JSON, {job, script,
-// runs}, to stdout. Returns 0 unless Slurm refuses.
+// If `slurm` is true, submits a job array instead and writes one line of JSON, {job, script, runs},
+// to stdout. Returns 0 unless Slurm refuses.
 int RunExperiment(const ExperimentOptions& options);
 
-// Executes one run; output and exit code are those of RunExperiment. Any number of processes may do
-// so for one experiment, on any hosts that share its folder. Throws Error: no experiment in the
-// folder, no such run, or a command runs the whole experiment.
+// Executes one run; output and exit code are those of RunExperiment. Any number of processes may
+// call RunExperimentTask for one experiment, on any hosts that share its folder. Throws Error if
+// there is no experiment in the folder or no such run, or if a command executes the whole
+// experiment.
 int RunExperimentTask(const ExperimentTask& task);
 
 }  // namespace shoal::launch

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// runs.jsonl of an experiment. One line is written when something is started for a run: its
+// runs.jsonl of an experiment. One line is written when a process is started for a run: its
 // training, a resumed training, or the first missing evaluation on a further task. A second line is
-// written when the started processes, and the evaluations that follow, have ended. So an end that
-// leaves no trace in the run's folder (the run was refused before it had a folder, or its process
-// died) can be found after any kill.
+// written when the started process, and the evaluations that follow, have ended. The log therefore
+// also shows ends that leave no trace in the run's folder: the run was refused before its folder
+// existed, or its process was killed.
 //
 //   {"time", "event": "started", "run", "resumed", "jobs", "cores": [...]}
 //   {"time", "event": "ended", "run", "by_signal", "code", "stopped", "problem"}
 //
-// Several processes may write, on several hosts; a lock on the file covers each line.
+// Several processes on several hosts may write. The file is locked while a line is written.
 #pragma once
 
 #include <chrono>
@@ -24,9 +24,9 @@ namespace shoal::launch {
 inline constexpr std::chrono::seconds kOthersWrite{60};
 
 struct RunStart {
-  std::string run{};     // ARM-sSEED
-  bool resumed = false;  // the run had a folder already
-  int jobs = 1;          // runs at the same time that the command allowed, or tasks of its array
+  std::string run{};         // ARM-sSEED
+  bool resumed = false;      // the run's folder existed already
+  int jobs = 1;              // largest number of runs, or of tasks of the array, at the same time
   std::vector<int> cores{};  // cores of the run; empty = all
 };
 
@@ -34,29 +34,29 @@ struct RunEnding {
   std::string run{};
   bool by_signal = false;
   int code = 0;           // exit code, or the signal's number
-  bool stopped = false;   // the experiment was being stopped, so the code is no failure
-  std::string problem{};  // last line of its output, or the signal; empty after a success
+  bool stopped = false;   // the experiment was being stopped, so the code is not a failure
+  std::string problem{};  // last line of the output, or the signal; empty after a success
 };
 
 // Entries of the log about one run.
 struct LoggedRun {
   int starts = 0;
-  int most_jobs = 0;                  // largest `jobs` of its starts
+  int most_jobs = 0;                  // largest `jobs` of all starts
   std::vector<int> cores{};           // of the last start
-  std::optional<RunEnding> ending{};  // of the last start; empty: not logged
+  std::optional<RunEnding> ending{};  // end of the last start; empty: not logged
 };
 
 class RunLog {
  public:
   explicit RunLog(std::filesystem::path file) : file_(std::move(file)) {}
 
-  // Both append a line and wait until it is on the disk. Both throw Error, also if another process
-  // holds the file for kOthersWrite.
+  // Both functions append a line and wait until the line is on the disk. They throw Error, also if
+  // another process holds the file for kOthersWrite.
   void Write(const RunStart& start) const;
   void Write(const RunEnding& ending) const;
 
-  // Entries by run; empty if there is no file. An incomplete line, left by a kill, is skipped.
-  // Throws Error on JSON that is neither of the two events.
+  // Entries by run; empty if there is no file. An incomplete line, left by a killed process, is
+  // skipped. Throws Error if a line is neither of the two events.
   std::map<std::string, LoggedRun> Read() const;
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Order in which the runs of an experiment are executed: finished runs are skipped, interrupted
-// runs are continued, and a failed run does not stop the following ones. RunKeeper hides processes
-// and files from the queue.
+// Queue that executes the runs of an experiment. Finished runs are skipped, interrupted runs are
+// continued, and a failed run does not stop the following runs. RunKeeper hides processes and files
+// from the queue.
 #pragma once
 
 #include <functional>
@@ -20,7 +20,7 @@ class RunKeeper {
   virtual StandingReport Standing(const ExperimentRun& run) = 0;
   // Starts or continues the run on the cores of a free slot (0 <= slot < jobs).
   virtual void Start(const ExperimentRun& run, int slot) = 0;
-  // Whether the run of this slot has ended; does not wait. Once true, the slot is free.
+  // Whether the run of this slot has ended, so that the slot is free; does not wait.
   virtual bool Ended(int slot) = 0;
   // First call: asks every active run to stop in order. Second call: stops the runs at once.
   virtual void Stop() = 0;
@@ -40,8 +40,8 @@ struct QueueHooks {
 };
 
 // Executes every run once, in order, until all are processed, or until a stop was requested and the
-// active runs have ended. A run that another process still holds is postponed: the processes of a
-// killed command need some time to exit.
+// active runs have ended. A run that another process still holds is postponed, because the
+// processes of a killed command need some time to exit.
 void DoRuns(const std::vector<ExperimentRun>& runs, const QueueTerms& terms, RunKeeper& keeper,
             const QueueHooks& hooks);
 

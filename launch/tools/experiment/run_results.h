@@ -23,15 +23,15 @@ struct RunResults {
   std::filesystem::path folder{};
   std::string name{};
   Config config{};
-  std::vector<EvaluationFigures> curve{};  // while training, by env steps
+  std::vector<EvaluationFigures> curve{};  // evaluations during training, sorted by env steps
   std::vector<RolloutPoint> rollouts{};  // empty until ReadRollouts (launch/tools/report/curves.h)
   std::optional<EvaluationFigures> final{};   // eval/final.json
-  std::vector<EvaluationFigures> transfer{};  // eval/on-TASK.json: on other tasks, by task
+  std::vector<EvaluationFigures> transfer{};  // eval/on-TASK.json: on other tasks, sorted by task
   // meta.json; empty before the run has written it.
   std::string exit{}, error{}, started{}, finished{}, precision{};
-  std::vector<std::string> commits{};  // builds that took part, in order
+  std::vector<std::string> commits{};  // builds that executed the run, in order
   std::string cpu{};
-  int cores = 0;  // of the machine, usable by the run
+  int cores = 0;  // cores of the machine that the run may use
   uint64_t env_steps = 0, updates = 0;
   double wall_seconds = 0;
 
@@ -40,12 +40,12 @@ struct RunResults {
   std::optional<double> Objective() const;
 };
 
-// Throws Error: config.json is missing, or a file is broken.
+// Throws Error if config.json is missing or a file is broken.
 RunResults ReadRunResults(const std::filesystem::path& run);
 
 // Finds the first series of stop.evaluations (two by default) consecutive evaluations whose pooled
-// episodes have at least this success (launch/record/first_reached.h). Returns the first evaluation
-// of the series; null = not reached.
+// episodes have at least this success rate (launch/record/first_reached.h). Returns the first
+// evaluation of the series; null = not reached.
 const EvaluationFigures* FirstReaching(const RunResults& run, double success);
 // Env steps at the evaluation that FirstReaching returns; empty = not reached.
 std::optional<uint64_t> StepsToSuccess(const RunResults& run, double success);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Results of one method over its seeds, with intervals, and their form in summaries, comparisons
-// and reports. The unit of the statistics is the seed (statistics.h).
+// Results of one method over its seeds, with intervals, and the form of these results in summaries,
+// comparisons and reports. The unit of the statistics is the seed (statistics.h).
 #pragma once
 
 #include <cstdint>
@@ -16,11 +16,11 @@ namespace shoal::launch {
 struct SeedFigures {
   std::vector<SeedSuccess> successes{};        // of each seed; empty if the task has no success
   std::vector<double> returns{}, distances{};  // means of each seed; distances in m
-  // Seeds whose run failed (numbers that were not finite, a process that died). The vectors exclude
-  // these seeds; every line and object states their number.
+  // Number of seeds whose run failed (numbers that were not finite, a process that died). The
+  // vectors exclude these seeds; every line and object states their number.
   size_t failed = 0;
 
-  // Adds one seed: the evaluation that gives its result.
+  // Adds the result of one seed.
   void Add(std::optional<double> success, size_t episodes, double return_mean,
            std::optional<double> distance);
 
@@ -32,7 +32,8 @@ struct SeedFigures {
 };
 
 // {pooled, episodes, mean, seeds, ci95, wilson95, failed, mean_with_failed_as_0}: `mean` and `ci95`
-// are over seeds; `wilson95` is the interval of the policy if there is one seed, else null.
+// are over seeds; `wilson95` is the interval of the policy's success rate if there is one seed,
+// else null.
 nlohmann::ordered_json SuccessJson(const SeedFigures& figures);
 // {mean, ci95, seeds, failed}.
 nlohmann::ordered_json ReturnJson(const SeedFigures& figures);

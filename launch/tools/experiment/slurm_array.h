@@ -14,19 +14,19 @@
 namespace shoal::launch {
 
 struct ArrayTerms {
-  std::optional<int> at_once{};               // tasks that Slurm may run at a time; empty = any
-  std::vector<std::string> sbatch_options{};  // of sbatch; they override those of the script
+  std::optional<int> at_once{};               // most tasks at a time; empty = no limit
+  std::vector<std::string> sbatch_options{};  // for sbatch; they override the script's options
 };
 
 struct SlurmArray {
-  std::string job{};  // Slurm's number
+  std::string job{};  // number of the job in Slurm
   std::filesystem::path script{};
   std::vector<std::string> runs{};  // in the order of the tasks
 };
 nlohmann::ordered_json ToJson(const SlurmArray& array);
 
-// The runs among `runs` that an array would execute: runs not started or interrupted, and, if
-// `retry_failed`, failed ones.
+// The runs among `runs` that an array would execute: missing and interrupted runs and, if
+// `retry_failed`, failed runs.
 std::vector<ExperimentRun> StillToBeDone(const StoredExperiment& experiment,
                                          const std::vector<ExperimentRun>& runs, bool retry_failed);
 
@@ -35,8 +35,8 @@ std::string ArrayScript(const StoredExperiment& experiment, const std::vector<Ex
                         const ArrayTerms& terms, const std::filesystem::path& program);
 
 // Writes the script into the experiment's folder (slurm.sbatch), submits the script with sbatch and
-// records the job in slurm.json. Waits a minute at most for Slurm. Throws Error: tasks of an
-// earlier array are still queued or running, sbatch is missing, or sbatch refuses the script.
+// records the job in slurm.json. Waits a minute at most for Slurm. Throws Error if tasks of an
+// earlier array are still queued or running, if sbatch is missing, or if sbatch refuses the script.
 SlurmArray SubmitArray(const StoredExperiment& experiment, const std::vector<ExperimentRun>& runs,
                        const ArrayTerms& terms);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Intervals and ratios of experiments. Pure. The unit is the seed: episodes of one training are not
-// independent evidence about the method.
+// Intervals and ratios of experiments. Pure. The unit is the seed, because episodes of one training
+// are not independent evidence about the method.
 #pragma once
 
 #include <cstdint>
@@ -18,10 +18,10 @@ struct Interval {
 double Mean(std::span<const double> values);  // needs at least one value
 // Standard deviation with n - 1 in the denominator; needs at least two values.
 double SampleDeviation(std::span<const double> values);
-// Needs at least one value; an even number of values gives the mean of the two middle ones.
+// Needs at least one value; an even number of values gives the mean of the two middle values.
 double Median(std::vector<double> values);
 
-// The part of the interval within [low, high], for values that cannot lie outside these bounds.
+// The part of the interval within [low, high], for values that cannot be outside these bounds.
 Interval Within(const Interval& interval, double low, double high);
 
 // 95 % interval of a proportion from `successes` of `trials` > 0 (Wilson 1927, without continuity
@@ -48,8 +48,8 @@ struct SeedSuccess {
 std::optional<Interval> SuccessInterval95(std::span<const SeedSuccess> seeds);
 
 // Mean of the values between the quartiles: floor(n / 4) values are removed at each end (Agarwal et
-// al. 2021, arXiv:2108.13264; scipy's trim_mean with 0.25). The plain mean for fewer than four
-// values. Needs at least one value.
+// al. 2021, arXiv:2108.13264; scipy's trim_mean with 0.25). For fewer than four values, the result
+// is the plain mean. Needs at least one value.
 double InterquartileMean(std::vector<double> values);
 
 // 95 % stratified percentile bootstrap of a statistic (arXiv:2108.13264, section 4.1; rliable's
@@ -61,7 +61,7 @@ std::optional<Interval> StratifiedBootstrap95(const std::vector<std::vector<doub
                                               const Statistic& statistic, uint64_t seed = 1,
                                               int resamples = 10'000);
 
-// The same of the mean of one stratum (Efron 1979).
+// 95 % bootstrap interval of the mean of one stratum (Efron 1979).
 std::optional<Interval> BootstrapInterval95(std::span<const double> values, uint64_t seed = 1,
                                             int resamples = 10'000);
 
@@ -82,8 +82,8 @@ struct SampleRatio {
   std::vector<RatioPair> pairs;
   int not_reached = 0;  // pairs with at least one side that did not reach the target
   // Median over all pairs. A pair ranks above every number if only the reference reached the
-  // target, and below every number if only the arm did. Empty if the median falls on such a pair,
-  // if neither side of some pair reached the target, or without pairs.
+  // target, and below every number if only the arm reached the target. Empty if the median is such
+  // a pair, if neither side of some pair reached the target, or if there are no pairs.
   std::optional<double> median;
 };
 
@@ -97,7 +97,7 @@ struct TargetReached {
 };
 
 // Ratio over the seeds whose runs are over in both the arm and the reference. A run that is not
-// over has not failed to reach the target yet.
+// over is left out, because it may still reach the target.
 SampleRatio RatioOfEnded(std::span<const TargetReached> arm,
                          std::span<const TargetReached> reference);
 

@@ -15,7 +15,7 @@ nlohmann::ordered_json IntervalJson(const std::optional<Interval>& interval);
 // {name, pairs: [{seed, n, n_reference, ratio}], not_reached, median}.
 nlohmann::ordered_json RatioJson(const std::string& name, const SampleRatio& ratio);
 
-// "median 1.50 of 3 pairs, 1 not reached", or the reason why there is no median. `pairs`: seeds
+// "median 1.50 of 3 pairs, 1 not reached", or the reason why there is no median. A pair is a seed
 // that both arms have.
 std::string FormatMedian(const SampleRatio& ratio);
 // The ratio of each pair, with the arms' names: "seed 31: 1.50, seed 32: not reached by faster,

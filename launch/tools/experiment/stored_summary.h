@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A summary.json without the folders of its runs, such as the copies in docs/results.
+// Reader of a summary.json without the folders of its runs, such as the copies in docs/results.
 #pragma once
 
 #include <filesystem>
@@ -10,9 +10,9 @@ namespace shoal::launch {
 
 // Reads the object of a file. The aggregates (success, return, final_distance, ratios) are computed
 // anew from the rows (`runs` of each arm); all other members are unchanged. If the file does not
-// name the rule of n_to_target, an older build wrote it, and n_to_target_rule is set to that
-// build's rule: two consecutive evaluations that both reach the target. Throws Error naming the
-// file if it is not a shoal-experiment-1 object.
+// name the rule of n_to_target, an older build wrote the file. n_to_target_rule is then set to the
+// rule of that build: two consecutive evaluations that both reach the target. If the file is not a
+// shoal-experiment-1 object, throws Error naming the file.
 nlohmann::ordered_json ReadStoredSummary(const std::filesystem::path& file);
 
 // Text for the terminal: the question, a line per arm, the ratios.

@@ -28,22 +28,22 @@ struct RunOutcome {
 struct ArmOutcome {
   std::string name{};
   std::vector<RunOutcome> runs{};  // by seed, in the order of the seeds
-  SeedFigures figures{};           // of the final evaluations of the finished runs
+  SeedFigures figures{};           // results of the final evaluations of the finished runs
 };
 
 // A world with its own baselines: a task with its threshold, model file, physics and action repeat.
 struct JudgedWorld {
   enum class Kind {
-    kFirst,      // of the first arm
-    kOtherTask,  // another task, of a further arm or of a test on a further task
-    kOtherArm,   // a task listed already, with other settings of an arm
+    kFirst,      // the world of the first arm
+    kOtherTask,  // another task: of a further arm, or of an evaluation on a further task
+    kOtherArm,   // a task that is listed already, with other settings of an arm
   };
   Kind kind = Kind::kFirst;
-  std::string name{};  // of the task; kOtherArm: of the arm
+  std::string name{};  // name of the task; kOtherArm: name of the arm
   Config config{};
 };
 
-// One entry for each world, beginning with the first arm's.
+// One entry for each world, beginning with the world of the first arm.
 std::vector<JudgedWorld> JudgedWorlds(const StoredExperiment& experiment);
 
 struct ExperimentOutcome {
@@ -65,13 +65,13 @@ struct ExperimentOutcome {
   std::vector<NamedBaselines> baselines{};
 };
 
-// Reads every run. A broken run counts as failed. Throws Error only for a broken experiment.json or
-// log.
+// Reads every run. A broken run counts as failed. Throws Error only if experiment.json or the log
+// is broken.
 ExperimentOutcome ReadOutcome(const StoredExperiment& experiment);
 
 nlohmann::ordered_json ToJson(const ExperimentOutcome& outcome);
 
-// summary.json of the experiment's folder, replaced atomically. Throws Error.
+// Writes summary.json in the experiment's folder atomically. Throws Error.
 void WriteSummary(const ExperimentOutcome& outcome);
 
 // Text for the terminal: the question, a line per arm, the ratios, the missing runs.

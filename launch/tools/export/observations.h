@@ -21,15 +21,16 @@ struct ObservationSet {
 };
 
 // Images are noise, each in its own range of brightness. Vectors are normally distributed with mean
-// 0 and deviation 1. If the policy normalises vectors, they have the mean and deviation of `scale`
-// instead, and a tenth of the numbers is 30 times as far from the mean, so that clipping is tested.
+// 0 and standard deviation 1. If the policy normalises vectors, `scale` gives the mean and the
+// standard deviation instead, and a tenth of the numbers is 30 times as far from the mean, so that
+// clipping is tested.
 ObservationSet RandomObservations(const ObservationSpec& spec,
                                   const std::optional<nn::VectorScale>& scale, int count,
                                   uint64_t seed);
 
 // Recorded observations from the ring of the run that contains `checkpoint` (RUN/checkpoints/NAME
-// or RUN/checkpoints/candidates/NAME). Empty, with the reason in `why`, if the run has no ring or
-// the ring has another spec.
+// or RUN/checkpoints/candidates/NAME). If the run has no ring or the ring has another spec, returns
+// empty and writes the reason to `why`.
 std::optional<ObservationSet> RecordedObservations(const std::filesystem::path& checkpoint,
                                                    const ObservationSpec& spec, int count,
                                                    uint64_t seed, std::string* why);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs an ONNX model node by node with the plain operators of onnx_operators.h. The evaluator is
-// slow, and simple enough to be trusted. Export compares the policy with the evaluator before a
-// file is written.
+// slow, but simple enough to serve as a reference. Export compares the policy with the evaluator
+// before a file is written.
 #pragma once
 
 #include <map>

@@ -10,7 +10,8 @@
 
 namespace shoal::launch {
 
-// Largest allowed difference between the actions of an exported policy and of Shoal's, in f32.
+// Largest allowed difference between the actions of an exported policy and the actions of Shoal's
+// policy, in f32.
 inline constexpr float kMostDifference = 1e-4f;
 
 struct OnnxExport {
@@ -18,8 +19,8 @@ struct OnnxExport {
   std::vector<Agreement> agreements;  // one for each set of observations
 };
 
-// Writes the model, reads it back, and evaluates it with plain operators on each set. Throws Error
-// stating the difference if an action differs by more than kMostDifference.
+// Writes the model, reads the bytes back, and evaluates the model with plain operators on each set.
+// If an action differs by more than kMostDifference, throws Error stating the difference.
 OnnxExport ExportOnnx(const policy::CheckpointPolicy& policy,
                       const std::vector<ObservationSet>& sets);
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // An ONNX file as a value: the subset of the format that a policy needs, and its encoding.
 //
-// Constants are f32. Inputs and the output have the batch as their first dimension, N, which
-// the program that runs the file chooses. Each node follows the nodes whose outputs it reads.
+// Constants are f32. The first dimension of the inputs and of the output is the batch size N, which
+// the program that runs the file chooses. A node comes after the nodes whose outputs it reads.
 //
-// Source: ONNX, github.com/onnx/onnx, docs/IR.md and docs/Operators.md, operator set 17 of 2022:
-// the first with LayerNormalization, and old enough that runtimes of the years since read it.
+// Source: ONNX, github.com/onnx/onnx, docs/IR.md and docs/Operators.md, operator set 17 of 2022.
+// This is the first set with LayerNormalization; later runtimes still read this set.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ namespace shoal::launch {
 inline constexpr int kOnnxOperatorSet = 17;
 inline constexpr int kOnnxIrVersion = 8;  // IR version of that operator set
 
-// Row-major. An empty shape: a single number.
+// Array of numbers, row-major. If `shape` is empty, the tensor is a single number.
 struct OnnxTensor {
   std::vector<int64_t> shape = {};
   std::vector<float> values = {};
@@ -28,7 +28,7 @@ struct OnnxTensor {
   bool operator==(const OnnxTensor&) const = default;
 };
 
-// Count of the numbers in a tensor of this shape.
+// Number of elements of a tensor with this shape.
 size_t Count(const std::vector<int64_t>& shape);
 
 using OnnxAttribute = std::variant<int64_t, float, std::vector<int64_t>>;
@@ -44,7 +44,7 @@ struct OnnxNode {
 
 // An input or an output: (N, shape...).
 struct OnnxPort {
-  enum class Type { kF32 = 1, kU8 = 2 };  // as the format numbers them
+  enum class Type { kF32 = 1, kU8 = 2 };  // the format's numbers
   std::string name = {};
   Type type = Type::kF32;
   std::vector<int64_t> shape = {};
@@ -66,8 +66,8 @@ struct OnnxModel {
 // the model is too large for the format (2 GB).
 std::string WriteOnnx(const OnnxModel& model);
 
-// Decodes bytes that WriteOnnx wrote. `source` names the bytes in errors. Throws Error on anything
-// else, including other operator sets and tensors of other types.
+// Decodes bytes that WriteOnnx wrote. `source` names the bytes in errors. Throws Error on other
+// bytes, for example on other operator sets or tensors of other types.
 OnnxModel ReadOnnx(std::string_view bytes, const std::string& source);
 
 }  // namespace shoal::launch

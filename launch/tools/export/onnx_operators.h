@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ONNX operators of exported policies, as plain loops. They share no code with the policy's
-// networks, so that they check the meaning of a file independently.
+// The ONNX operators of exported policies, as plain loops. The operators share no code with the
+// policy's networks, so that the check of a file is independent.
 //
 // Sums are in double. Attributes are supported only with the values that PolicyToOnnx writes.
 #pragma once
@@ -16,7 +16,7 @@ using OnnxArguments = std::span<const OnnxTensor* const>;
 // Throws Error naming the node if its inputs or attributes do not match the operator.
 using OnnxOperator = OnnxTensor (*)(const OnnxNode& node, OnnxArguments inputs);
 
-// Null if there is no operator of this name.
+// The operator of this name; null if there is none.
 OnnxOperator FindOnnxOperator(std::string_view name);
 
 }  // namespace shoal::launch

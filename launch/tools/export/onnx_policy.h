@@ -3,7 +3,7 @@
 // without exploration.
 //
 //   pixels            u8  (N, K*C, H, W)   only with pixels
-//   NAME of a block   f32 (N, size)        each that the policy sees, in the spec's order
+//   NAME of a block   f32 (N, size)        each block that the policy sees, in the spec's order
 //   action            f32 (N, A)           in [-1, 1]
 //
 // The model pools and scales pixels, and normalises vectors if the policy was trained on normalised

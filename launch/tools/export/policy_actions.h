@@ -15,8 +15,8 @@ namespace shoal::launch {
 std::vector<float> OwnActions(const policy::CheckpointPolicy& policy,
                               const ObservationSet& observations);
 
-// Actions of the exported model, by the plain evaluator (onnx_evaluator.h). Throws Error if the
-// model cannot run.
+// Actions of the exported model, computed by the plain evaluator (onnx_evaluator.h). Throws Error
+// if the model cannot run.
 std::vector<float> OnnxActions(const OnnxModel& model, const ObservationSpec& spec,
                                const ObservationSet& observations);
 

@@ -10,8 +10,9 @@
 
 namespace shoal::launch {
 
-// The bytes of a safetensors file: `pixels` U8 (N, K*C, H, W) if there are pixels, each observed
-// block F32 (N, size) by its name, and `action` F32 (N, A); all sets one after another.
+// The bytes of a safetensors file with the tensors `pixels` U8 (N, K*C, H, W) if there are pixels,
+// each observed block F32 (N, size) by its name, and `action` F32 (N, A). The samples of all sets
+// follow one another.
 std::string WriteSamples(const policy::CheckpointPolicy& policy,
                          const std::vector<ObservationSet>& sets);
 

@@ -12,8 +12,8 @@
 //
 // X: actor.features_extractor; for PPO features_extractor and pi_features_extractor, which are the
 // same module. Critics of the model are not changed. If the policy normalises observations, the
-// archive's pytorch_variables.pth has their mean and variance, for a VecNormalize around the
-// environment; set_parameters ignores this file.
+// archive's pytorch_variables.pth contains mean and variance of the observations, for a
+// VecNormalize around the environment; set_parameters ignores this file.
 //
 // Source: Stable-Baselines3 2.9, common/policies.py, common/torch_layers.py (NatureCNN),
 // common/save_util.py, sac/policies.py, td3/policies.py.
@@ -34,8 +34,8 @@ struct Sb3File {
   std::vector<std::string> notes;
 };
 
-// Throws Error (usage) naming the part of the algorithm or network that has no counterpart in
-// Stable-Baselines3, or Error naming a tensor that does not match.
+// If a part of the algorithm or network has no counterpart in Stable-Baselines3, throws Error
+// (usage) naming the part. If a tensor does not match, throws Error naming the tensor.
 Sb3File WriteSb3(const policy::CheckpointPolicy& policy);
 
 }  // namespace shoal::launch

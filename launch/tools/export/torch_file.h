@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that torch.load reads: an ordered dictionary of f32 tensors by name, as torch.save writes a
-// state_dict. The file is a zip archive of
+// Writer of files for torch.load: an ordered dictionary of f32 tensors by name, in the format in
+// which torch.save writes a state_dict. The file is a zip archive of
 //
 //   archive/data.pkl   pickled dictionary: storage number, shape and strides of each tensor
 //   archive/version    "3"

@@ -2,7 +2,7 @@
 // Zip archives of uncompressed files.
 //
 // Source: PKWARE's APPNOTE.TXT 6.3, sections 4.3.7 (local header), 4.3.12 (central directory),
-// 4.3.16 (its end).
+// 4.3.16 (end of the central directory).
 #pragma once
 
 #include <string>

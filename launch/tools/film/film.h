@@ -16,11 +16,11 @@ namespace shoal::launch {
 struct FilmOrder {
   std::filesystem::path run;
   std::vector<std::filesystem::path> checkpoints;  // shown one after the other
-  int episodes = 0;                                // of each checkpoint
-  int64_t seed = 0;  // the episodes are those of a final evaluation with this seed
+  int episodes = 0;                                // number of episodes of each checkpoint
+  int64_t seed = 0;  // selects the same episodes as in a final evaluation
   std::filesystem::path output;
-  std::string quality = {};  // of the larger view: fast | native | reference; empty = the run's
-  bool strips = false;       // makes a strip of each checkpoint's first episode as well
+  std::string quality = {};  // of the larger view: fast | native | reference; empty = as the run
+  bool strips = false;       // true: also makes a strip of each checkpoint's first episode
 };
 
 // Pictures of an episode side by side (film_strip.h).
@@ -39,7 +39,7 @@ struct FilmMade {
 // RUN/videos/NAME.mp4
 std::filesystem::path FilmPath(const std::filesystem::path& run, const std::string& name);
 
-// Throws Error (usage) if a film cannot have this name, or if CheckWritable refuses its place.
+// Throws Error (usage) if a film cannot have this name, or if CheckWritable refuses its folder.
 void CheckFilmOutput(const std::filesystem::path& run, const std::filesystem::path& output);
 
 // Plays the episodes with `shoal-actor --evaluate --frames` and encodes the frames as they arrive.

@@ -21,7 +21,7 @@ struct StripImage {
   std::string png;  // RGB
 };
 
-// Takes an episode's pictures in order and keeps a bounded number of them, evenly spread. One
+// Takes an episode's pictures in order and keeps a bounded number of evenly spread pictures. One
 // thread.
 class FilmStrip {
  public:

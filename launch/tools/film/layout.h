@@ -25,16 +25,17 @@ inline constexpr int kFilmView = 560;
 inline constexpr int kCaptionHeight = 24;
 
 struct FilmLayout {
-  int width = 0, height = 0;  // of the film, even: H.264 halves the resolution of its colours
+  int width = 0, height = 0;  // of the film; even, because H.264 halves the colours' resolution
   Box title, status;
-  // The policy's pictures, scaled: its cameras in the order of the spec, then their goals.
+  // The policy's pictures, scaled: its cameras in the order of the spec, then the cameras' goal
+  // pictures.
   std::vector<Box> cameras;
   Box view;
 };
 
-// Layout for `cameras` pictures of `height` x `width` each; 0 for a policy without pixels. All
-// pictures are enlarged by one whole number, the largest with which they fit beside the view. If
-// they are too large to fit, all are reduced by one whole number.
+// Layout for `cameras` pictures of `height` x `width` each; `cameras` is 0 for a policy without
+// pixels. All pictures are enlarged by the same whole number, the largest with which the pictures
+// fit next to the view. If the pictures are too large, all are reduced by the same whole number.
 FilmLayout MakeFilmLayout(int cameras, int height, int width);
 
 }  // namespace shoal::launch

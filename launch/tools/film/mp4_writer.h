@@ -13,8 +13,8 @@ namespace shoal::launch {
 // the file. Messages of libav are not printed; errors contain its reasons. One thread.
 class Mp4Writer {
  public:
-  // Each picture is shown for `microseconds`. Width and height must be even. Makes the folder of
-  // the file if necessary. Throws Error: the file cannot be written, or an encoder is missing.
+  // Each picture is shown for `microseconds`. Width and height must be even. Creates the folder of
+  // the file if necessary. Throws Error if the file cannot be written or an encoder is missing.
   Mp4Writer(const std::filesystem::path& path, int width, int height, uint32_t microseconds);
   ~Mp4Writer();
 

@@ -19,7 +19,7 @@ struct FilmText {
   uint32_t episode = 0;           // from 1
   uint32_t episodes = 0;          // number of episodes shown
   uint32_t step = 0;              // 0 = reset
-  std::optional<float> reward{};  // of the step; a reset has none
+  std::optional<float> reward{};  // of the step; empty at a reset
   double episode_return = 0;      // so far
   bool success = false;
 };
@@ -33,9 +33,9 @@ class FilmPicture {
 
   const FilmLayout& layout() const { return layout_; }
 
-  // `input`: (I, H, W) u8, the policy's input; empty without pixels. Draw shows the newest of the K
-  // frames and the goal picture, if there is one. `view`: (kFilmView, kFilmView, 3) u8. CHECK on
-  // other sizes.
+  // `input`: (I, H, W) u8, the policy's input; empty without pixels. I: channels of K frames and of
+  // the goal picture, if there is one. Draw shows the newest frame and the goal picture. `view`:
+  // (kFilmView, kFilmView, 3) u8. CHECK on other sizes.
   void Draw(const FilmText& text, std::span<const uint8_t> input, std::span<const uint8_t> view);
 
   // Rows of 4 bytes per pixel: B, G, R and an unused byte.
@@ -45,7 +45,7 @@ class FilmPicture {
  private:
   struct Canvas;  // cairo's surface
 
-  // Fills a box with the colours that colour_at(row, column) returns; row and column from 0.
+  // Fills a box with the colours that colour_at(row, column) returns; row and column begin at 0.
   template <class ColourAt>
   void Fill(const Box& box, const ColourAt& colour_at);
   // Draws one camera's picture of `frame` (C, H, W).

@@ -15,20 +15,20 @@
 namespace shoal::launch {
 
 // The frame rate of the film is the rate of env steps in simulated time, so that the robot moves at
-// its real speed. For tasks with more than 50 env steps a second, the film shows every second,
-// third, ... step and the last. The last picture of an episode stays for half a second. One thread
-// at a time.
+// its real speed. If a task has more than 50 env steps a second, the film shows every n-th step (n
+// = 2, 3, ...) and the last step of an episode. The last picture of an episode stays for half a
+// second. One thread at a time.
 class FilmReel {
  public:
   // `spec`: observation spec of the policies of all streams.
   FilmReel(const ObservationSpec& spec, const std::filesystem::path& output);
 
-  // Adds a stream of `episodes` whole episodes, read to its end from a file or pipe. The pictures
-  // of the first episode also go to `strip`, unless it is null. Throws Error if the stream is
-  // broken, ends early, or has sizes other than those of the spec and of kFilmView.
+  // Adds a stream of `episodes` whole episodes, read to its end from a file or pipe. Unless `strip`
+  // is null, the pictures of the first episode are also added to `strip`. Throws Error if the
+  // stream is broken, ends early, or has sizes other than those of the spec and of kFilmView.
   void Add(const std::filesystem::path& stream, const std::string& subtitle, uint32_t episodes,
            FilmStrip* strip = nullptr);
-  // Completes the file, after at least one stream.
+  // Completes the file. Call it after at least one stream.
   void Finish();
 
   uint64_t frames() const;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A command line as plain text: the content of --help as values, from which man pages and
-// completions are written.
+// A command line as plain text: the content of --help as values. Man pages and completions are
+// written from these values.
 #pragma once
 
 #include <string>
@@ -13,13 +13,13 @@ class App;
 
 namespace shoal::launch {
 
-// A word that can be typed, with its meaning, which may be empty.
+// A word that can be typed, and its meaning, which may be empty.
 struct Word {
   std::string word, meaning;
 };
 
 struct OptionText {
-  std::string name;                // "-h,--help"; of an argument without a flag "task"
+  std::string name;                // "-h,--help"; for an argument without a flag: "task"
   std::vector<std::string> flags;  // "-h", "--help"; empty for an argument without a flag
   std::string takes;               // as in --help: "TEXT REQUIRED", "INT=480"; may be empty
   std::string meaning;

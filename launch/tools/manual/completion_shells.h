@@ -4,7 +4,7 @@
 
 namespace shoal::launch {
 
-// bash splits the command line at '=', so that '=' is a word of its own.
+// bash splits the command line at '=', so '=' is a separate word.
 inline constexpr char kBashCompletion[] =
     R"(# bash completion of Shoal's programs, made from their command lines
 

@@ -8,11 +8,12 @@
 
 namespace shoal::launch {
 
-// A page of section 1: the program, its commands one after another, exit codes.
-// `see_also`: last section, pages such as "shoal(1)" separated by commas; empty = no such section.
+// A page of manual section 1: the program, its commands one after another, exit codes. `see_also`:
+// content of the heading "see also", pages such as "shoal(1)" separated by commas; empty = no such
+// heading.
 std::string ProgramPage(const CommandText& program, const std::string& see_also);
 
-// shoal-configuration(5): every key.
+// The page shoal-configuration(5) with every key.
 std::string ConfigurationPage();
 
 }  // namespace shoal::launch

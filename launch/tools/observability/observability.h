@@ -16,8 +16,8 @@ struct ObservabilityRequest {
   std::string task;
   // Sets of cameras to compare; empty: each camera of the task alone, and each pair.
   std::vector<std::vector<std::string>> cameras;
-  std::vector<std::string> labels;  // as sac.aux
-  bool goal_hidden = false;         // hides the marker of the goal, as in runs that relabel goals
+  std::vector<std::string> labels;  // in the form of sac.aux
+  bool goal_hidden = false;         // true: hides the goal's marker, as in runs that relabel goals
   int width = 84, height = 84;
   std::string quality = "fast", encoder = "compact";
   int samples = 6000;
@@ -27,19 +27,21 @@ struct ObservabilityRequest {
 
 struct ObservabilityRow {
   std::vector<std::string> cameras;
-  // One value per label, in its unit: root mean squared distance over the label's numbers together.
-  // `error`: of the network; `of_mean`: of always predicting the mean.
+  // One value per label, in the label's unit: root mean squared distance, over all numbers of the
+  // label together. `error`: error of the network; `of_mean`: error if the mean is always
+  // predicted.
   std::vector<double> error, of_mean;
 };
 
 struct Observability {
   ObservabilityRequest request;
-  int trained = 0, held_out = 0;       // frames
+  int trained = 0, held_out = 0;       // numbers of frames
   std::vector<ObservabilityRow> rows;  // in the order of the request
 };
 
-// `on_row` is called when a row is finished. `stop` is called often; true ends the measurement with
-// the rows finished so far. Throws Error (kUsage) on an unknown task, camera or block.
+// `on_row` is called when a row is finished. `stop` is called often; if `stop` returns true, the
+// measurement ends with the rows finished so far. Throws Error (kUsage) on an unknown task, camera
+// or block.
 Observability MeasureObservability(const ObservabilityRequest& request,
                                    const std::function<void(const ObservabilityRow&)>& on_row,
                                    const std::function<bool()>& stop);

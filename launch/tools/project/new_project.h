@@ -8,13 +8,13 @@
 
 namespace shoal::launch {
 
-// Makes the complete folder or nothing. Throws Error (usage) if the folder exists or its parent
-// does not; (run-time) if the template is missing or a file cannot be written.
+// Creates the complete folder or nothing. Throws a usage error if the folder exists or its parent
+// does not exist, and a run-time error if the template is missing or a file cannot be written.
 void NewProject(const std::filesystem::path& folder);
 
-// The commands that build and train the project in `folder`, as shell text. They name the prefix of
-// the CMake package unless CMake finds the package by itself. If there is no such package, the text
-// states this and what to install. Throws Error if there is no template.
+// The commands that build and train the project in `folder`, as shell text. The commands name the
+// prefix of the CMake package unless CMake finds the package by itself. If there is no such
+// package, the text says so and names the package to install. Throws Error if there is no template.
 std::string NextSteps(const std::filesystem::path& folder);
 
 }  // namespace shoal::launch

@@ -11,12 +11,13 @@
 
 namespace shoal::python {
 
-// Owns a thread. Calls are made by one thread, one at a time.
+// Owns a thread. One other thread makes the calls, one at a time.
 class CallWatch {
  public:
   // `environment`: name of the environment in the error line. If a call takes longer than `limit`,
-  // the caller gets SIGUSR2, on which faulthandler writes the Python stack (set up by
-  // shoal_rl.actor). Then the watch writes the line and ends the process with exit code 1.
+  // the watch sends SIGUSR2 to the calling thread; Python's faulthandler, set up by shoal_rl.actor,
+  // then writes the Python stack. After that the watch writes the error line and ends the process
+  // with exit code 1.
   CallWatch(std::string environment, std::chrono::duration<double> limit);
   ~CallWatch();
   CallWatch(const CallWatch&) = delete;
@@ -46,7 +47,7 @@ class CallWatch {
   std::atomic<int64_t> began_ns_{0};  // steady clock; 0 = no call
   std::atomic<const char*> name_{nullptr};
   std::atomic<bool> leave_{false};
-  std::thread thread_;  // last: uses the other members
+  std::thread thread_;  // the last member, because the thread uses the other members
 };
 
 }  // namespace shoal::python

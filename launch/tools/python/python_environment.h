@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// An environment with Gymnasium's interface, called from C++. It takes the place of a physics
-// engine behind actor/hosted/hosted_environment.h.
+// An environment with Gymnasium's interface, called from C++. Implements RawEnvironment
+// (actor/hosted/raw_environment.h).
 //
-// Threads: constructed and called on one thread. The thread does not hold Python's global lock
-// (GIL) between calls; each call acquires the GIL.
+// Threads: constructed and called on one thread. Each call acquires Python's global lock (GIL);
+// between calls the thread does not hold the GIL.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -31,7 +31,7 @@ struct EnvironmentOpener {
 // An opened environment: shoal_rl.hosting.Opened.
 struct OpenedEnvironment {
   pybind11::object opened;
-  tasks::EnvironmentDescription description;  // without the facts that only steps reveal
+  tasks::EnvironmentDescription description;  // without the facts that are found only by steps
 };
 
 // The environment to open: members of config.env.
@@ -39,12 +39,13 @@ struct EnvironmentOrder {
   std::string id, kwargs, folder, task;
   bool picture = false;  // pictures will be rendered (render_mode="rgb_array")
 };
-// Opens the environment. The caller holds the GIL. Throws Error (kUsage): the environment does not
-// exist, Shoal cannot train it, or it raised an exception, whose traceback is written to stderr.
+// Opens the environment. The caller holds the GIL. Throws Error (kUsage) if the environment does
+// not exist, if Shoal cannot use the environment for training, or if the environment raised an
+// exception, whose traceback is written to stderr.
 OpenedEnvironment Open(const EnvironmentOpener& opener, const EnvironmentOrder& order);
 
 // Records in the description whether Shoal can compute the environment's rewards for other goals
-// (shoal_rl.goals). The caller holds the GIL. Throws Error as Open does.
+// (shoal_rl.goals). The caller holds the GIL. Throws the errors of Open.
 void FindGoal(const EnvironmentOpener& opener, OpenedEnvironment* opened);
 
 class __attribute__((visibility("hidden"))) PythonEnvironment final
@@ -62,7 +63,7 @@ class __attribute__((visibility("hidden"))) PythonEnvironment final
 
  private:
   struct Leaf {
-    std::vector<pybind11::object> keys;  // into nested dicts
+    std::vector<pybind11::object> keys;  // keys that lead through nested dicts to the array
     SpaceArray array;
   };
 

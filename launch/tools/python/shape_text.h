@@ -9,7 +9,7 @@
 
 namespace shoal::python {
 
-// "(3,)"; `batch` puts N in front: "(N, 3)".
+// "(3,)"; with `batch`, N is the first dimension: "(N, 3)".
 std::string ShapeText(std::span<const pybind11::ssize_t> shape, bool batch = false);
 
 }  // namespace shoal::python

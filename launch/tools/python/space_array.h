@@ -16,14 +16,14 @@ namespace shoal::python {
 // The attribute hides the class, because pybind11's types are hidden.
 class __attribute__((visibility("hidden"))) SpaceArray {
  public:
-  // The caller holds the GIL in all calls. `environment`: its name in messages.
+  // The caller holds the GIL in all calls. `environment`: name of the environment in messages.
   SpaceArray(std::string environment, tasks::ArraySpace space);
 
   const tasks::ArraySpace& space() const { return space_; }
-  // `value` itself if it matches, else a copy: contiguous in C order, with the element type of the
-  // description. float32 and float64 are accepted for each other, because many environments declare
-  // one and return the other. Throws Error (kRuntime) naming `call` on another shape or element
-  // type.
+  // Returns `value` as an array that is contiguous in C order and has the element type of the
+  // description. If `value` is not such an array, the result is a copy. float32 is accepted for
+  // float64 and the reverse, because many environments declare one type and return the other.
+  // Throws Error (kRuntime) naming `call` on another shape or element type.
   pybind11::array Take(const char* call, const pybind11::handle& value) const;
 
  private:
@@ -32,7 +32,7 @@ class __attribute__((visibility("hidden"))) SpaceArray {
   const std::string environment_;
   const tasks::ArraySpace space_;
   const pybind11::dtype type_;
-  const bool real_;                    // float32 or float64
+  const bool real_;                    // the element type is float32 or float64
   const pybind11::object contiguous_;  // numpy.ascontiguousarray
 };
 

@@ -7,9 +7,9 @@
 
 namespace shoal::launch {
 
-// Makes `folder` from the run's judged checkpoint and its final evaluation. Throws Error naming the
-// missing part (the final evaluation, the checkpoint), or naming the folder if it exists already.
-// An error leaves no new files.
+// Creates `folder` from the run's judged checkpoint and final evaluation. If one of these is
+// missing, or if the folder exists already, throws Error naming the missing part or the folder.
+// After an error there are no new files.
 void WriteCard(const std::filesystem::path& run, const std::filesystem::path& folder);
 
 }  // namespace shoal::launch

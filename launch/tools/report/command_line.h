@@ -12,7 +12,7 @@ namespace shoal::launch {
 std::string CommandLine(const std::vector<std::string>& words);
 
 // Command that trains a run again from its own configuration, into runs/NAME-again. The command
-// sets run_dir, because `config` may have another one: an experiment's run does.
+// sets run_dir, because the run_dir of `config` may be another folder, as for an experiment's run.
 std::string TrainAgain(const std::filesystem::path& config, const std::string& name);
 
 }  // namespace shoal::launch

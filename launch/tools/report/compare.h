@@ -17,18 +17,19 @@ namespace shoal::launch {
 struct GroupFigures {
   std::string name{};
   std::vector<int64_t> seeds{};
-  std::vector<bool> over{};  // by seed: finished or failed
+  std::vector<bool> over{};  // by seed: the run is finished or failed
   // Results of the final evaluation of each run, or of the last evaluation if the run has not
-  // ended. A failed run is only counted, unless it is the only run of the group.
+  // ended. Failed runs are only counted, unless the group has no other run.
   SeedFigures figures{};
   std::vector<std::string> without_final{};  // runs judged by their last evaluation
   std::vector<std::string> failed{};
   std::vector<std::string> unevaluated{};
-  // Env steps by seed; empty = not reached, or not reached yet if the run is not over.
+  // Env steps to the target, by seed; empty = not reached, or not reached yet if the run is not
+  // over.
   std::vector<std::optional<double>> n_to_target{};
-  std::vector<std::optional<double>> seconds_to_target{};      // wall clock; empty as above
+  std::vector<std::optional<double>> seconds_to_target{};  // wall clock, by seed; empty likewise
   std::vector<double> env_steps{}, updates{}, wall_seconds{};  // by seed
-  double core_hours = 0;  // of all seeds: wall time x usable cores
+  double core_hours = 0;  // wall time x usable cores, summed over all seeds
 };
 
 struct KeyDifference {
@@ -40,7 +41,8 @@ struct Comparison {
   std::string task{};
   double target_success = 0.9;
   std::vector<GroupFigures> groups{};
-  // Ratios of each further group to the first, over the seeds whose runs are over in both.
+  // Ratio of each further group to the first group, over the seeds whose runs are over in both
+  // groups.
   std::vector<SampleRatio> ratios{};
   std::vector<KeyDifference> differences{};
   std::optional<Baselines> baselines{};  // empty if not measured

@@ -15,12 +15,12 @@ enum class PlotFigure { kSuccess, kReturn, kFinalDistance };
 struct CurvePoint {
   double x = 0;
   double mean = 0, low = 0, high = 0;  // over the seeds: mean, smallest, largest
-  size_t seeds = 0;                    // whose curves extend to x
+  size_t seeds = 0;                    // number of seeds whose curves extend to x
 };
 
 // Curve of one group's evaluations during training, over `axis`. Each seed's curve is linear
-// between its evaluations and ends with the last one. The curve has a point at each evaluation of
-// any seed, thinned to at most `points`. Empty if no run has the figure.
+// between its evaluations and ends with the last evaluation. The group's curve has a point at each
+// evaluation of any seed, reduced to at most `points`. Empty if no run has values of `figure`.
 std::vector<CurvePoint> CurveOf(const RunGroup& group, PlotAxis axis, PlotFigure figure,
                                 size_t points = 200);
 
@@ -32,7 +32,7 @@ void ReadRollouts(std::vector<RunGroup>* groups);
 std::vector<CurvePoint> RolloutCurveOf(const RunGroup& group, PlotAxis axis, PlotFigure figure,
                                        size_t points = 200);
 
-// Figures that at least one run has, in the order success, return, distance.
+// Those of success, return and distance, in this order, that at least one run has.
 std::vector<PlotFigure> FiguresThereAre(const std::vector<RunGroup>& groups);
 
 }  // namespace shoal::launch

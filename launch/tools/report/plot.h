@@ -11,7 +11,7 @@
 
 namespace shoal::launch {
 
-// Both throw Error (usage) naming the unknown word and the possible words.
+// Both functions throw Error (usage) if the word is unknown; the message lists the possible words.
 PlotAxis ParsePlotAxis(const std::string& word);      // env-steps | updates | wall
 PlotFigure ParsePlotFigure(const std::string& word);  // success | return | distance
 
@@ -21,12 +21,13 @@ struct Plot {
   std::vector<PlotFigure> figures{};  // drawn from top to bottom
 };
 
-// Script for gnuplot with the data in it. The ending of `output` selects png or svg. Throws Error
-// (usage) if no run has a figure.
+// Script for gnuplot that contains the data. The extension of `output` selects png or svg. Throws
+// Error (usage) if no run has values to draw.
 std::string PlotScript(const Plot& plot, const std::vector<RunGroup>& groups,
                        const std::filesystem::path& output);
 
-// Draws the picture. Throws Error: gnuplot is not installed, fails, or the file cannot be written.
+// Draws the picture. Throws Error if gnuplot is not installed or fails, or if the file cannot be
+// written.
 void Draw(const Plot& plot, const std::vector<RunGroup>& groups,
           const std::filesystem::path& output);
 

@@ -15,12 +15,12 @@ struct ReportContent {
   Comparison comparison{};
   std::vector<RunGroup> groups{};
   std::vector<Definition> definitions{};  // of the experiments among the subjects
-  std::vector<std::string> commands{};    // that repeat the runs
-  std::vector<std::string> curves{};      // SVG documents, one per axis; empty without figures
+  std::vector<std::string> commands{};    // command lines that repeat the runs
+  std::vector<std::string> curves{};      // SVG documents, one per axis; empty without values
 };
 
-// Reads the subjects and draws their curves. Throws Error as ReadSubjects and Draw do, and if tasks
-// differ, unless all belong to one experiment.
+// Reads the subjects and draws their curves. Throws the errors of ReadSubjects and Draw. Also
+// throws Error if the tasks differ, unless all subjects belong to one experiment.
 ReportContent GatherReport(const SubjectOptions& options);
 
 // The HTML page. Text from outside the program is escaped.

@@ -12,13 +12,13 @@
 
 namespace shoal::launch {
 
-// Runs that differ only in their seeds: an arm, or one named run.
+// Runs that differ only in their seeds: the runs of an arm, or one named run.
 struct RunGroup {
   std::string name{};
-  std::vector<RunResults> runs{};          // runs with an evaluation, including failed ones
+  std::vector<RunResults> runs{};          // runs with an evaluation, including failed runs
   std::vector<std::string> unevaluated{};  // names of an arm's runs without an evaluation yet
-  std::vector<std::string> unfinished{};   // of `runs`: runs that are not finished
-  std::vector<std::string> failed{};       // failed runs, with or without an evaluation
+  std::vector<std::string> unfinished{};   // names of those `runs` that are not finished
+  std::vector<std::string> failed{};       // names of failed runs, with or without an evaluation
 };
 
 struct SubjectOptions {
@@ -29,8 +29,8 @@ struct SubjectOptions {
 
 // One name on the command line.
 struct Subject {
-  std::string name{};                            // of its folder
-  std::optional<StoredExperiment> experiment{};  // empty: a run
+  std::string name{};                            // name of the folder
+  std::optional<StoredExperiment> experiment{};  // empty if the subject is a run
 };
 
 struct Subjects {

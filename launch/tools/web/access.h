@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Access rights to the page. Pure, except for MakeToken.
 //
-// Read access: on loopback, every user of this host whose request names this host. A foreign page
-// that uses "DNS rebinding" names another host. At any other address, every holder of the token.
-// Write access (every method except GET and HEAD): a request from a page of this server with the
-// token in a header of its own. A browser sends cookies automatically, so a cookie never gives
-// write access.
+// Read access on loopback: every user of this host whose request names this host. (A foreign page
+// that uses "DNS rebinding" names another host.) Read access at other addresses: every holder of
+// the token. Write access (every method except GET and HEAD): a request from a page of this server
+// with the token in the header kTokenHeader. A browser sends cookies automatically, so a cookie
+// never gives write access.
 #pragma once
 
 #include <string>
@@ -17,16 +17,16 @@ namespace shoal::launch {
 
 inline constexpr char kTokenHeader[] = "X-Shoal-Token";
 inline constexpr char kTokenCookie[] =
-    "shoal_token";                              // followed by the port: cookies know no ports
+    "shoal_token";                              // followed by the port, as cookies ignore ports
 inline constexpr char kTokenQuery[] = "token";  // query parameter of the printed address
 
 // 128 random bits as 32 hexadecimal digits. Throws Error if the system provides no random bits.
 std::string MakeToken();
 
-// Whether a and b are equal, computed in a time that depends only on their lengths.
+// Whether a and b are equal. The time of the comparison depends only on their lengths.
 bool EqualInConstantTime(std::string_view a, std::string_view b);
 
-// The value of a cookie in a Cookie header; empty if there is no cookie of that name.
+// The value of cookie `name` in a Cookie header; empty if there is no cookie of that name.
 std::string_view CookieValue(std::string_view header, std::string_view name);
 
 // Identification of a caller in its request. An empty member is missing in the request.
@@ -40,8 +40,8 @@ struct Caller {
 
 enum class Access {
   kAllowed,
-  kNoToken,  // no token, or a wrong one
-  kForeign,  // from another server's page, or by another host name
+  kNoToken,  // no token, or a wrong token
+  kForeign,  // the request comes from another server's page, or names another host
 };
 
 class Gate {

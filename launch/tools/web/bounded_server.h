@@ -4,7 +4,7 @@
 // per connection.
 //
 // Encoded bodies are not decoded, and answers are not compressed, because the client would control
-// the cost of both. Handlers answer ranges themselves.
+// the cost of decoding and compression. Handlers answer ranges themselves.
 #pragma once
 
 #include <atomic>
@@ -19,18 +19,19 @@ namespace shoal::launch {
 struct ServerLimits {
   std::chrono::milliseconds request{3000};  // to receive a whole request
   std::chrono::milliseconds answer{15000};  // to send an answer
-  std::chrono::milliseconds file{300000};   // to send a file, over a slow line
+  std::chrono::milliseconds file{300000};   // to send a file, for slow connections
   size_t request_bytes = 24000;             // headers and body
   size_t threads = 16;
-  size_t waiting = 16;  // connections; further ones are closed at once
+  size_t waiting = 16;  // waiting connections; further connections are closed at once
 };
 
 class BoundedServer final : public HttpServer {
  public:
-  // `is_file`: whether the answer to this path is a file, with the time limit limits.file.
+  // `is_file`: whether the answer to this path is a file. The time limit of such answers is
+  // limits.file.
   BoundedServer(const ServerLimits& limits, std::function<bool(const std::string&)> is_file);
 
-  // Ends the waits of all connections, so that Server::stop returns soon.
+  // Ends the waiting of all connections, so that Server::stop returns soon.
   void EndConnections() { ending_ = true; }
 
  private:

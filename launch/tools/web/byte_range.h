@@ -13,9 +13,9 @@ struct ByteRange {
 };
 
 enum class RangeAsked {
-  kWhole,  // no range, several, or an invalid one: the answer is the whole file
+  kWhole,  // no range, several ranges, or an invalid range: the answer is the whole file
   kPart,
-  kOutside,  // begins behind the file's end
+  kOutside,  // the range begins after the file's end
 };
 
 // `header`: the Range header, "bytes=0-99", "bytes=100-", "bytes=-50". Sets *range if the result is

@@ -12,11 +12,12 @@ namespace shoal::launch {
 // Result of httplib::TaskQueue::enqueue: void in 0.11; in 0.18 whether the task was accepted.
 using Enqueued = decltype(std::declval<httplib::TaskQueue&>().enqueue(nullptr));
 
-// httplib::Server with AnswerRequest, which answers the one request of a connection. Version 0.18
-// also takes the addresses of both ends, for logging; Shoal does not use them.
+// httplib::Server with the function AnswerRequest, which answers the only request of a connection.
+// In version 0.18 process_request also has parameters for the addresses of both ends, for logging;
+// Shoal does not use these addresses.
 class HttpServer : public httplib::Server {
  protected:
-  // False if the connection had no request that could be answered.
+  // Returns false if the connection had no request that could be answered.
   template <class Connection>
   bool AnswerRequest(Connection& connection,
                      const std::function<void(httplib::Request&)>& prepare) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Connections to the running runs that a page shows. The network of a run is joined at the first
-// request for the run and left some time after the last one. Runs that no page shows are not
-// joined.
+// Connections to the running runs that a page shows. LiveRuns joins the network of a run at the
+// first request for the run, and leaves the network some time after the last request. Runs that no
+// page shows are not joined.
 #pragma once
 
 #include <chrono>
@@ -20,16 +20,16 @@ namespace shoal::launch {
 // Any thread. Requests about one run are answered one after the other.
 class LiveRuns {
  public:
-  static constexpr std::chrono::seconds kUnwatched{15};  // unused time until a run is left
-  static constexpr size_t kMost = 4;  // connections; the least recently used is dropped
+  static constexpr std::chrono::seconds kUnwatched{15};  // time without requests before leaving
+  static constexpr size_t kMost = 4;  // connections; the least recently used is closed
 
   // `secure`: folder of credentials; empty = as each run's cluster.json says.
   explicit LiveRuns(const std::string& secure) : secure_(secure) {}
 
-  // The run's newest view. The first call for a run waits up to 5 s for the view. Throws Error: the
-  // run is not running, or its coordinator does not answer or is silent.
+  // The run's newest view. The first call for a run waits up to 5 s for the view. Throws Error if
+  // the run is not running, or if its coordinator does not answer or is silent.
   RunViewMessage View(const std::filesystem::path& run);
-  // RunClient::Order.
+  // Sends an order: see RunClient::Order.
   ReplyMessage Order(const std::filesystem::path& run, const std::string& verb,
                      const std::vector<std::string>& arguments);
   // Leaves runs that no page shows any more. Call every few seconds.

@@ -17,15 +17,17 @@ namespace shoal::launch {
 // {"error": message}
 std::string ErrorAnswer(std::string_view message);
 
-// {"view": as `shoal top --once --json`, "line", "advice", "columns", "rows": as `shoal top
-// --once`,
-//  "progress": figures of its first line, null if unknown, "events": [[time, text], ...]}
+// {"view": output of `shoal top --once --json`,
+//  "line", "advice", "columns", "rows": parts of the output of `shoal top --once`,
+//  "progress": numbers of the first line, null if unknown,
+//  "events": [[time, text], ...]}
 std::string TopAnswer(const RunViewMessage& view);
 
-// {"runs": as `shoal runs --json`, "keys": keys that `set` accepts}
+// {"runs": output of `shoal runs --json`, "keys": keys that `set` accepts}
 std::string RunsAnswer(const std::filesystem::path& dir, const std::vector<RunListing>& runs);
 
-// {"checkpoint": newest or "", "files": [{path, bytes, modified}], "episode": {state, ...}}
+// {"checkpoint": name of the newest, or "", "files": [{path, bytes, modified}],
+//  "episode": {state, ...}}
 std::string RunAnswer(const std::string& checkpoint, const std::vector<ServedName>& files,
                       const PlayedEpisode& episode);
 

@@ -23,14 +23,14 @@ struct PageContentOptions {
   std::string secure{};
 };
 
-// Any thread. The answers are JSON (page_answers.h). All throw Error.
+// Any thread. The answers are JSON (page_answers.h). All functions throw Error.
 class PageContent {
  public:
   explicit PageContent(const PageContentOptions& options)
       : options_(options), live_(options.secure) {}
 
-  // Folder of a run that the page shows; empty if there is no run of that name. The name is
-  // compared with those of the runs; no path is built from it.
+  // Folder of a run that the page shows; empty if there is no run of that name. The name is only
+  // compared with the names of the runs; no path is built from the name.
   std::optional<std::filesystem::path> FindRun(const std::string& name) const;
 
   std::string Runs();
@@ -41,7 +41,7 @@ class PageContent {
   std::string Carry(const std::filesystem::path& run, const std::string& body);
   std::string Play(const std::filesystem::path& run);
 
-  // Film of the run's played episode; empty if there is none.
+  // Film of the run's played episode; empty if there is no film.
   std::filesystem::path EpisodeFilm(const std::filesystem::path& run) const;
   void Tend() { live_.LeaveUnwatched(Now()); }
 
@@ -59,7 +59,7 @@ class PageContent {
   Mutex curves_mutex_;
   std::map<std::filesystem::path, CurvesOf> curves_ SHOAL_GUARDED_BY(curves_mutex_);
   Mutex runs_mutex_;
-  std::string runs_ SHOAL_GUARDED_BY(runs_mutex_);  // recent answer of Runs()
+  std::string runs_ SHOAL_GUARDED_BY(runs_mutex_);  // last answer of Runs()
   SteadyTime runs_of_ SHOAL_GUARDED_BY(runs_mutex_){};
 };
 

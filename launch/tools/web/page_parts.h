@@ -8,8 +8,8 @@
 
 namespace shoal::launch {
 
-// The folder of dygraphs: in the bundle or prefix of the program, else in Debian's package
-// libjs-dygraphs.
+// The folder of dygraphs: in the bundle or prefix of the program, or, if dygraphs is not there, in
+// Debian's package libjs-dygraphs.
 std::filesystem::path ChartLibrary();
 
 struct PagePart {
@@ -18,7 +18,7 @@ struct PagePart {
 };
 
 // The parts by name: "index.html", "page.js", "dygraph.min.js", ... Reads the chart library from
-// its folder. Throws Error naming a missing file and its package.
+// its folder. If a file is missing, throws Error naming the file and its package.
 std::map<std::string, PagePart> LoadPageParts(
     const std::filesystem::path& chart_library = ChartLibrary());
 

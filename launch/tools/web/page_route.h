@@ -2,15 +2,15 @@
 // Routes: the meaning of a request, from its method and path. Pure.
 //
 //   GET   /                             the page
-//         /page.js, /dygraph.min.js ... a part of it
+//         /page.js, /dygraph.min.js ... a part of the page
 //         /api/runs                     every run and its state
-//         /api/runs/NAME                films, reports and pictures of a run; its played episode
+//         /api/runs/NAME                films, reports, pictures, played episode of a run
 //         /api/runs/NAME/top            output of `shoal top` for the run
-//         /api/runs/NAME/curves         its curves
-//         /files/NAME/videos/best.mp4   a file of its folder (served_file.h)
-//         /episode/NAME                 the film of its played episode
+//         /api/runs/NAME/curves         curves of the run
+//         /files/NAME/videos/best.mp4   a file of the run's folder (served_file.h)
+//         /episode/NAME                 the film of the run's played episode
 //   POST  /api/runs/NAME/order          {"verb": "set" | "scale" | "stop", "arguments": [...]}
-//         /api/runs/NAME/episode        plays an episode with its newest checkpoint
+//         /api/runs/NAME/episode        plays an episode with the run's newest checkpoint
 #pragma once
 
 #include <string>
@@ -19,8 +19,8 @@
 namespace shoal::launch {
 
 enum class PageItem {
-  kNothing,  // there is no such thing
-  kPart,     // of the page, including "index.html"
+  kNothing,  // the path has no meaning
+  kPart,     // part of the page, including "index.html"
   kRuns,
   kRun,
   kTop,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// An episode that a run's newest checkpoint plays for the page, as a film: the policy's input
-// beside a larger view. The evaluation's program plays the episode on request, at a lower priority
-// than the run. The film is kept in a scratch folder, not in the run's folder.
+// An episode that a run's newest checkpoint plays for the page, as a film: the policy's input and a
+// larger view, side by side. The evaluation's program plays the episode on request, at a lower
+// priority than the run. The film is kept in a scratch folder, not in the run's folder.
 #pragma once
 
 #include <atomic>
@@ -19,14 +19,15 @@ namespace shoal::launch {
 struct PlayedEpisode {
   enum class State { kNone, kPlaying, kReady, kFailed };
   State state = State::kNone;
-  std::string checkpoint{};             // name
+  std::string checkpoint{};             // name of the checkpoint
   uint64_t env_steps = 0, updates = 0;  // of the checkpoint
   int64_t seed = 0;                     // of the episode
   std::string problem{};                // kFailed: one line
   std::filesystem::path film{};         // kReady
 };
 
-// Any thread. One episode is played at a time. The newest episode of a run is kept, for a few runs.
+// Any thread. One episode is played at a time. For a few runs, the newest episode of the run is
+// kept.
 class PlayedEpisodes {
  public:
   PlayedEpisodes() = default;
@@ -35,8 +36,8 @@ class PlayedEpisodes {
   PlayedEpisodes(const PlayedEpisodes&) = delete;
   PlayedEpisodes& operator=(const PlayedEpisodes&) = delete;
 
-  // Starts an episode and returns. Throws Error: another episode is being played, or the run has no
-  // checkpoint yet.
+  // Starts an episode and returns. Throws Error if another episode is being played, or if the run
+  // has no checkpoint yet.
   void Play(const std::filesystem::path& run);
   PlayedEpisode Of(const std::filesystem::path& run) const;
 

@@ -12,8 +12,8 @@
 
 namespace shoal::launch {
 
-// A curve of bounded size. When the curve is full, every second point is removed, and from then on
-// only as many of the new points are kept. The newest point is always included.
+// A curve of bounded size. When the curve is full, every second point is removed, and the spacing
+// of points that are kept later doubles. The newest point is always included.
 class ThinnedCurve {
  public:
   struct Point {
@@ -40,9 +40,9 @@ class RunCurves {
   // read from its beginning. Never throws because of the files' content: invalid lines are skipped.
   void ReadOn(uint64_t most_bytes = 8'000'000);
 
-  // {"complete": whether the files are read to their end,
-  //  "charts": [{"id", "title", "meaning", "series": [{"name", "points": [[x, y], ...]}]}]},
-  // charts with at least one point.
+  // {"complete": whether the files have been read to their end,
+  //  "charts": [{"id", "title", "meaning", "series": [{"name", "points": [[x, y], ...]}]}]}.
+  // Only charts with at least one point are included.
   std::string Json() const;
 
  private:

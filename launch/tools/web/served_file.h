@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files of a run's folder that the page serves: films, reports and pictures of the kinds below. No
-// other file of the folder is served, and none outside of the folder.
+// other files are served.
 //
 //   videos/NAME.mp4    NAME.html    NAME.svg    NAME.png    plots/NAME.svg    plots/NAME.png
 #pragma once
@@ -22,11 +22,11 @@ struct ServedFile {
   const char* type = "";  // MIME
 };
 
-// `path`: relative to the run's folder, with slashes. Empty if the path is of no kind above, does
-// not exist, is not a regular file, or contains a link below the run's folder.
+// `path`: relative to the run's folder, with slashes. Empty if the path has none of the forms
+// above, does not exist, is not a regular file, or contains a link below the run's folder.
 std::optional<ServedFile> OpenServedFile(const std::filesystem::path& run, std::string_view path);
 
-// Opens a file of Shoal's own at any path. Empty as for OpenServedFile, except for the kinds.
+// Opens a file that Shoal made, at any path and of any form. Otherwise like OpenServedFile.
 std::optional<ServedFile> OpenWholeFile(const std::filesystem::path& file, const char* type);
 
 struct ServedName {
@@ -35,7 +35,7 @@ struct ServedName {
   double modified = 0;  // seconds since 1970
 };
 
-// The existing files, the newest first; at most 200.
+// The existing files of the forms above, the newest first; at most 200.
 std::vector<ServedName> ListServedFiles(const std::filesystem::path& run);
 
 }  // namespace shoal::launch

@@ -11,7 +11,7 @@
 namespace shoal::launch {
 
 struct WebOptions {
-  std::string run{};  // the only run shown: name in run_dir, or folder; empty = all
+  std::string run{};  // the only run shown: name in run_dir, or folder; empty = all runs
   std::string run_dir = "runs";
   std::string secure{};    // folder of credentials; empty = as each run's cluster.json says
   ListenAddress listen{};  // port 0: the system chooses a port
@@ -19,9 +19,9 @@ struct WebOptions {
 
 class WebServer {
  public:
-  // Listens, and answers on its own threads until destruction, which waits only briefly for each of
-  // them. Throws Error: the run does not exist, the address or port cannot be used, or a part of
-  // the page is not installed.
+  // Listens, and answers on its own threads until destruction. The destructor waits only briefly
+  // for each thread. Throws Error if the run does not exist, if the address or port cannot be used,
+  // or if a part of the page is not installed.
   explicit WebServer(const WebOptions& options);
   ~WebServer();
   WebServer(const WebServer&) = delete;

@@ -23,7 +23,8 @@ inline Moments MomentsOf(const std::vector<double>& sample) {
   return moments;
 }
 
-// The standard errors of n independent normal numbers: sigma / sqrt(n), sigma / sqrt(2 n).
+// Standard errors of mean and deviation of n independent normal numbers: sigma / sqrt(n) and sigma
+// / sqrt(2 n).
 inline bool LooksNormal(const std::vector<double>& sample, double mean, double sigma) {
   const Moments seen = MomentsOf(sample);
   const double root = std::sqrt(static_cast<double>(sample.size()));
@@ -31,7 +32,7 @@ inline bool LooksNormal(const std::vector<double>& sample, double mean, double s
          std::fabs(seen.deviation - sigma) < 5 * sigma / (std::sqrt(2.0) * root);
 }
 
-// The sample with its noise around `mean` multiplied.
+// The sample with its deviations from `mean` multiplied by `factor`.
 inline std::vector<double> Scaled(std::vector<double> sample, double mean, double factor) {
   for (double& x : sample) x = mean + factor * (x - mean);
   return sample;

@@ -15,7 +15,7 @@
 
 namespace shoal::actor {
 
-inline constexpr uint32_t kFirstEnv = 4;  // of the actor
+inline constexpr uint32_t kFirstEnv = 4;  // number of the actor's first environment
 
 // A small network for the frames of CountingEnvironment.
 inline Config SmallConfig(int envs) {
@@ -45,7 +45,7 @@ class FakeSink final : public RecordSink {
   void EndRecord(uint64_t sequence) override {
     sequences.push_back(sequence);
     records.push_back(open_);
-    // Cleared, because the time differs between two runs.
+    // The time is cleared, because it differs between two runs.
     RecordLayout::Header(reinterpret_cast<uint8_t*>(records.back().data())).time_ns = 0;
   }
 
@@ -57,14 +57,14 @@ class FakeSink final : public RecordSink {
 
   size_t room = 1000;
   std::vector<uint64_t> sequences;
-  std::vector<std::vector<uint64_t>> records;  // as words: aligned to 8
+  std::vector<std::vector<uint64_t>> records;  // stored as words, so that they are aligned to 8
 
  private:
   const RecordLayout layout_;
   std::vector<uint64_t> open_;
 };
 
-// An actor session with `envs` environments from `first_env` on.
+// An actor session with `envs` environments; the first has the number `first_env`.
 struct RolloutParts {
   RolloutParts(const std::filesystem::path& run, RecordSink& sink, int envs, uint32_t first_env = 0,
                uint64_t session = 10)

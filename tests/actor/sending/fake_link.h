@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A link to a replay server that the test simulates, and the clock of both. Time passes only while
-// the sender waits for a credit.
+// A link to a replay server that the test simulates, and the clock of sender and link. Time passes
+// only while the sender waits for a credit.
 #pragma once
 
 #include <deque>
@@ -21,7 +21,7 @@ struct FakeClock {
 class FakeLink final : public ChunkLink {
  public:
   struct SentChunk {
-    uint64_t first = 0, last = 0;  // sequences
+    uint64_t first = 0, last = 0;  // sequences of the first and last record
     SteadyTime time;
     std::vector<uint8_t> bytes;
   };
@@ -55,7 +55,7 @@ class FakeLink final : public ChunkLink {
   std::function<void()> answer;  // called at each poll for a credit
   std::deque<Credit> credits;
   std::vector<SentChunk> sent;
-  std::vector<uint64_t> positions;  // of chunks without records: the first retained sequence
+  std::vector<uint64_t> positions;  // first retained sequence, from each chunk without records
   bool connected = true, taking = true;
 
  private:

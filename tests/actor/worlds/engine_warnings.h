@@ -7,7 +7,7 @@
 
 namespace shoal::worlds {
 
-// Expects exactly `count` warnings, in tests that cause them on purpose.
+// Expects exactly `count` warnings. For tests that cause warnings on purpose.
 void ExpectEngineWarnings(int64_t count);
 
 }  // namespace shoal::worlds

@@ -12,7 +12,7 @@ namespace shoal {
 
 class SchemaCheck {
  public:
-  // The first fault as "PATH: KEYWORD"; empty if there is none. Fails the test on an unknown
+  // The first fault as "PATH: KEYWORD"; empty if there is no fault. Fails the test on an unknown
   // keyword, so that no keyword is ignored.
   static std::string Fault(const nlohmann::json& value, const nlohmann::json& schema,
                            const std::string& path = "") {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A message as Cyclone serialises it.
+// Encoding of a message by Cyclone.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace shoal::dds {
 
-// Serialises types other than bulk types; includes the header of four bytes.
+// Returns the serialised message, including the header of four bytes. Not for bulk types.
 template <class M>
 std::vector<uint8_t> EncodeCdr(const M& message) {
   constexpr uint32_t kXcdr2 = 2;  // encoding of appendable types

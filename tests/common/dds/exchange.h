@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sends messages of each kind from one process to another.
+// Sends messages of each type from one process to another.
 #pragma once
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A dds_peer in a process of its own, driven over pipes.
+// A dds_peer in a separate process, controlled over pipes.
 #pragma once
 
 #include <sys/types.h>
@@ -15,7 +15,8 @@ namespace shoal::dds {
 
 class PeerProcess {
  public:
-  // Starts it and waits until it has joined; fails the test otherwise (the reason is on stderr).
+  // Starts the process and waits until it has joined the domain. If it does not join, fails the
+  // test (the reason is on stderr).
   PeerProcess(const std::string& role, const ClusterAddress& address);
   // A coordinator that claims a domain (see address()).
   PeerProcess() : PeerProcess(std::string()) {}
@@ -33,28 +34,28 @@ class PeerProcess {
   // "got" lines that precede the answer are kept for NextGot.
   std::string Ask(const std::string& command,
                   std::chrono::milliseconds deadline = std::chrono::seconds(40));
-  // Like Ask, in two steps.
+  // Send and Answer: the two steps of Ask.
   void Send(const std::string& command);
   std::string Answer(std::chrono::milliseconds deadline = std::chrono::seconds(40));
   // The next "got" line; empty at the deadline.
   std::string NextGot(std::chrono::milliseconds deadline = std::chrono::seconds(10));
 
   void Signal(int signal) const { kill(pid_, signal); }
-  // SIGKILL, and waits for the end.
+  // Sends SIGKILL and waits for the process's end.
   void Kill();
   // Asks the process to end, and waits for its end.
   void Quit();
 
  private:
   void Spawn(std::vector<std::string> arguments);
-  // The next line of either kind.
+  // The next line, an answer or a "got" line.
   std::string ReadLine(std::chrono::steady_clock::time_point end);
   std::string NextLine(bool want_got, std::chrono::milliseconds deadline);
 
   ClusterAddress address_;
   pid_t pid_ = -1;
   int to_child_ = -1, from_child_ = -1;
-  std::string buffer_;           // read, not yet a whole line
+  std::string buffer_;           // text that was read and is not yet a whole line
   std::string pending_got_;      // lines seen while waiting for an answer
   std::string pending_answers_;  // lines seen while waiting for a "got"
 };

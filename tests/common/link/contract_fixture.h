@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Members of a run for the tests of the contract in hub.h. They are driven by commands
-// (peer_commands.h): processes for DDS, threads for the local link.
+// Members of a run for the tests of the contract in hub.h. Each member executes commands
+// (peer_commands.h). Members are processes for DDS, threads for the local link.
 #pragma once
 
 #include <fmt/core.h>
@@ -29,7 +29,7 @@ inline constexpr std::chrono::seconds kDeadline{20};
 
 using Numbers = std::vector<uint64_t>;
 
-// FIRST, FIRST + 1, ... LAST.
+// Returns first, first + 1, ... last.
 inline Numbers Range(uint64_t first, uint64_t last) {
   Numbers numbers;
   for (uint64_t n = first; n <= last; ++n) numbers.push_back(n);
@@ -42,7 +42,7 @@ class ContractTest : public ::testing::TestWithParam<Implementation> {
 
   Peer Join(Role role) { return network_->Join(role); }
 
-  // A writer and a reader of `type`, which both sides count as matched.
+  // Makes a writer and a reader of `type`, and waits until both sides report the match.
   static void Connect(ContractPeer& writer, ContractPeer& reader, const std::string& type) {
     ASSERT_EQ(reader.Ask("subscribe " + type), "ok");
     ASSERT_EQ(writer.Ask("publish " + type), "ok");
@@ -81,7 +81,7 @@ class ContractTest : public ::testing::TestWithParam<Implementation> {
     return seen;
   }
 
-  // Waits until the message of that key was delivered.
+  // Waits until the message `number` of `key` has been delivered. Returns false at the deadline.
   static bool WaitFor(ContractPeer& peer, const std::string& type, uint64_t key, uint64_t number) {
     const SteadyTime start = Now();
     for (;;) {
@@ -100,7 +100,7 @@ class ContractTest : public ::testing::TestWithParam<Implementation> {
     return all;
   }
 
-  // Holds the reader's callbacks, and makes one wait by sending `number` from `writer`.
+  // Holds the reader's callbacks and sends `number` from `writer`, so that one callback waits.
   static void HoldWith(ContractPeer& reader, ContractPeer& writer, const std::string& type,
                        uint64_t number) {
     ASSERT_EQ(reader.Ask("hold " + type), "ok");
@@ -108,7 +108,7 @@ class ContractTest : public ::testing::TestWithParam<Implementation> {
     ASSERT_EQ(reader.Ask("waiting " + type + " 20000"), "yes");
   }
 
-  // Writes FIRST, FIRST + 1, ... until a write is refused. Returns the refused number.
+  // Writes first, first + 1, ... until a write is refused. Returns the refused number.
   static uint64_t WriteUntilRefused(ContractPeer& writer, const std::string& type, uint64_t first,
                                     size_t bytes) {
     constexpr uint64_t kEnough = 100;

@@ -22,9 +22,10 @@ class ContractPeer {
   virtual std::string Answer(milliseconds deadline = std::chrono::seconds(40)) = 0;
   // The next "got" line; empty at the deadline.
   virtual std::string NextGot(milliseconds deadline = std::chrono::seconds(20)) = 0;
-  // Destroys writers, readers and hub, and returns after that.
+  // Destroys writers, readers and hub before it returns.
   virtual void Quit() = 0;
-  // Ends the member without notice to the others. Only the destructor may be called afterwards.
+  // Ends the member without notice to the other members. Only the destructor may be called
+  // afterwards.
   virtual void Kill() = 0;
 
   std::string Ask(const std::string& command) {

@@ -130,7 +130,7 @@ inline void Fill(uint64_t n, RunViewMessage* m) {
   m->updates = n;
   m->processes.resize(3);
   for (uint64_t i = 0; i < m->processes.size(); ++i) Fill(n + i, &m->processes[i]);
-  m->processes[1].names.clear();  // no two processes report the same figures
+  m->processes[1].names.clear();  // no two processes report the same metrics
   m->processes[1].values.clear();
   m->events = {{.number = n, .time = 1.5, .text = "first"},
                {.number = n + 1, .time = 2, .text = ""}};

@@ -16,7 +16,7 @@
 
 namespace shoal {
 
-// Size and hash.
+// Size and hash of a payload.
 inline std::string Bytes(std::span<const uint8_t> payload) {
   return fmt::format("{}:{:x}", payload.size(), HashBytes(payload.data(), payload.size()));
 }
@@ -43,7 +43,7 @@ std::string FieldText(const std::vector<E>& elements) {
   return text + "]";
 }
 
-// One line; payloads as size and hash.
+// The message as one line; payloads are written as size and hash.
 template <HasFields M>
 std::string Describe(const M& message) {
   std::string text;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The far side of tests of the link: executes text commands on a hub. dds_peer runs them in a
-// separate process, tests of the link in memory on a thread (contract_network.h).
+// The remote side in tests of the link: executes text commands on a hub. dds_peer executes the
+// commands in a separate process. Tests of the link in memory execute the commands on a thread
+// (contract_network.h).
 //
 // T is the name of a message type. Each command has one answer line:
 //
 //   subscribe T                makes the reader and counts messages; "ok"
-//   show T                     the same, and prints "got T DESCRIPTION" for each message
+//   show T                     like subscribe, and prints "got T DESCRIPTION" for each message
 //   unsubscribe T              starts a thread that destroys the reader; "ok"
 //   unsubscribed T MS          waits for the end of that thread; "yes" or "no"
 //   publish T                  makes the writer; "ok"
@@ -16,21 +17,21 @@
 //                              writes numbered messages and repeats refused writes;
 //                              "wrote COUNT refused N seconds S"
 //   scribble T FIRST COUNT BYTES
-//                              the same, each on a new thread with the payload of its number, from
-//                              one buffer that is overwritten after each write
+//                              like write, each on a new thread with the payload of its number,
+//                              from one buffer that is overwritten after each write
 //   try T N BYTES              one write; "sent MS" or "refused MS"
-//   announce T N BYTES         the same; prints "got trying T" directly before the write
+//   announce T N BYTES         like try; prints "got trying T" directly before the write
 //   received T COUNT MS        waits for COUNT messages; "received N gaps N bytes N malformed N"
 //   seen T                     "seen KEY:NUMBER ...", every message in the order of the callbacks
 //   hold T                     callbacks of T wait from now on; "ok"
 //   release T                  callbacks do not wait any more; "ok"
 //   waiting T MS               waits until a callback waits; "yes" or "no"
-//   overlaps T                 callbacks that began before the one before them ended; "overlaps N"
-//   acknowledged T MS          "yes" or "no"
+//   overlaps T                 number of callbacks that began during another; "overlaps N"
+//   acknowledged T MS          waits until all writes of T are acknowledged; "yes" or "no"
 //   malformed                  the hub's counts of malformed messages; "malformed TOPIC:N ..."
 //   answer                     stores nothing, but answers every chunk with a credit; "ok"
 //   roundtrip COUNT BYTES      chunk out, credit back, COUNT > 1 times; "microseconds MEDIAN MAX,
-//                              first FIRST": the first one waits for the reader's side of matching
+//                              first FIRST": the first trip also waits until the reader has matched
 #pragma once
 
 #include <functional>

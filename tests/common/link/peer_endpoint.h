@@ -204,8 +204,8 @@ class PeerEndpoint final : public PeerCommands::Endpoint {
   int waiting_ = 0;  // callbacks that wait for the end of the hold
   std::atomic<bool> running_{false};
   std::atomic<uint64_t> overlaps_{0};
-  std::optional<Reader<M>> reader_;  // its callback uses the rest
-  std::jthread unsubscribing_;       // uses reader_
+  std::optional<Reader<M>> reader_;  // the callback uses the members above
+  std::jthread unsubscribing_;       // the thread uses reader_
 };
 
 }  // namespace shoal::link

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Round trips of a chunk and the credit that answers it, as between actor and replay.
+// Round trips of a chunk and its credit, as between actor and replay.
 #pragma once
 
 #include <condition_variable>

@@ -29,11 +29,11 @@ inline double RelativeError(std::span<const float> fast, const reference::Values
   return error / scale;
 }
 
-// f32 products differ from double only by rounding. bf16 has 8 bits of mantissa: rounding through
-// several layers leaves an error of a few per cent.
+// Products in f32 differ from double only by rounding. bf16 has 8 bits of mantissa, so rounding in
+// several layers gives an error of a few per cent.
 inline double Tolerance(Precision precision) { return precision == Precision::kF32 ? 2e-5 : 0.04; }
 
-// Values in [-1, 1], exact in f32 but not in bf16: wrong rounding in a layer is detected.
+// Values in [-1, 1], exact in f32 but not in bf16, so that wrong rounding in a layer is detected.
 inline reference::Values RandomValues(size_t n, uint64_t key) {
   Random random(key);
   reference::Values values(n);

@@ -44,7 +44,8 @@ inline std::span<const float> GradientOf(ParameterSet& set, const std::string& n
   return {parameter.gradient(), Count(parameter)};
 }
 
-// Random values in every parameter, biases and norms too; scaled so that sums stay near 1.
+// Sets every parameter, also biases and norms, to random values times `scale`, so that sums stay
+// near 1.
 inline void Randomise(ParameterSet* set, uint64_t key, double scale) {
   const reference::Values values = RandomValues(size_t(set->size()), key);
   for (size_t i = 0; i < values.size(); ++i) set->values()[i] = float(values[i] * scale);

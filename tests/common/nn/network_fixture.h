@@ -22,7 +22,8 @@ inline NetworkConfig OddNetwork() {
   return network;
 }
 
-// Pixels (2*3, 22, 18) and a vector of 5, 3 actions; or the vector alone.
+// Spec with pixels (2*3, 22, 18), a vector of 5 numbers and 3 actions; without `pixels`, the vector
+// and the actions alone.
 inline ObservationSpec OddSpec(bool pixels) {
   ObservationSpec spec;
   spec.task = "test";
@@ -60,14 +61,14 @@ class NetworkTest : public LayerTest {
     Build(OddSpec(pixels), network);
   }
 
-  // Builds the parameters; encoder features are in place afterwards.
+  // Builds the parameters and, if there are pixels, computes the encoder's features.
   void Build(const ObservationSpec& spec, const NetworkConfig& network) {
     network_ = network;
     spec_ = spec;
-    encoder_.reset();  // reads the parameters before
+    encoder_.reset();  // the encoder borrows the previous parameters
     parameters_ = std::make_unique<ParameterSet>(AllParameters(network_, spec_),
                                                  ParameterSet::Use::kTraining);
-    // Initialised, then changed so that biases and norms have no special values.
+    // The parameters are initialised, then changed so that biases and norms have no special values.
     parameters_->Initialise(1);
     Random random(2);
     for (int64_t i = 0; i < parameters_->size(); ++i) {
@@ -84,8 +85,7 @@ class NetworkTest : public LayerTest {
         std::make_unique<Encoder>(Context(*parameters_, kBatch), PlanEncoder(network_, spec_));
     encoder_->Refresh();
     encoder_->Forward(frames_.data(), Statistics::kBatch);
-    // The heads are compared with the same features as input, so that each test measures its layer
-    // only.
+    // The heads get the same features as the reference, so that a test measures only its own layer.
     features_ = ToDoubles(ReadMemory(encoder_->features()));
   }
 
@@ -107,8 +107,8 @@ class NetworkTest : public LayerTest {
     }
   }
 
-  // A gradient passes more layers than an output. In bf16, a ReLU with an input near 0 may also be
-  // on the other side than in double.
+  // A gradient passes through more layers than an output. In bf16, the input of a ReLU near 0 may
+  // also have another sign than in double.
   double GradientTolerance() const { return GetParam() == Precision::kF32 ? 2e-4 : 0.15; }
 
   NetworkConfig network_;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records the oneDNN primitives of a piece of work and runs them again without the code between
-// them. Their time is the least that the work can take with these primitives.
+// Records the oneDNN primitives of a piece of work and runs the primitives again without the code
+// between them. Their time is the least time that the work can take with these primitives.
 //
-// A program that uses this header wraps dnnl_primitive_execute by a link option of the library. The
-// product does not depend on the trace.
+// A program that uses this header wraps dnnl_primitive_execute by a link option of the trace's
+// library. Shoal's programs do not contain the trace.
 #pragma once
 
 #include <dnnl.h>
@@ -15,8 +15,8 @@ namespace shoal::nn {
 
 class PrimitiveTrace {
  public:
-  // Runs `work`, which runs its primitives in this thread. Borrows the memory of the primitives:
-  // the networks of `work` must outlive the trace.
+  // Records `work`, which must run its primitives in this thread. Borrows the memory of the
+  // primitives, so the networks of `work` must outlive the trace.
   explicit PrimitiveTrace(const std::function<void()>& work);
 
   // Selects primitives by kind; their order is kept.
@@ -27,7 +27,7 @@ class PrimitiveTrace {
   // Multiplications and additions of the convolutions, forward and backward, padding included.
   double ConvolutionOperations() const;
 
-  // One execution; used by the wrapped function.
+  // One execution of a primitive. The wrapped function fills it.
   struct Execution {
     const_dnnl_primitive_t primitive;
     dnnl_stream_t stream;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Naive layers in double, for comparison with the fast ones. They implement the formulas in the
-// layers' headers with simple loops. Arrays are row-major.
+// Naive layers in double, for comparison with the fast layers. Simple loops implement the formulas
+// of the fast layers' headers. Arrays are row-major.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@ namespace shoal::nn::reference {
 
 using Values = std::vector<double>;
 
-// Dimensions: B batch, C channels, (H, W) in, N filters, (h, w) out of a k x k convolution.
+// Dimensions of a k x k convolution: B batch, C channels, (H, W) input, N filters, (h, w) output.
 struct ConvShape {
   int batch, channels, height, width, filters, stride;
   int kernel = 3, padding = 0;
@@ -28,7 +28,7 @@ Values ConvForward(const ConvShape& shape, const Values& x, const Values& weight
 Gradient ConvBackward(const ConvShape& shape, const Values& x, const Values& weight,
                       const Values& y, const Values& dy);
 
-// x (B, C, n), n the numbers of a map; weight, bias, mean, variance (C).
+// x (B, C, n), n: numbers in a feature map; weight, bias, mean, variance (C).
 struct Moments {
   Values mean, variance;  // variance with n in the denominator
 };
@@ -38,24 +38,24 @@ Values BatchNormForward(int batch, const Values& x, const Moments& moments, cons
 // Gradient of BatchNormForward with BatchMoments(x).
 Gradient BatchNormBackward(int batch, const Values& x, const Values& weight, const Values& dy);
 
-// P planes of (H, W) to P planes of (h, w) of a k x k window.
+// Pooling of P planes (H, W) to P planes (h, w) with a k x k window.
 struct PoolShape {
   int planes, height, width, kernel, stride, padding;
   int out_height() const { return (height + 2 * padding - kernel) / stride + 1; }
   int out_width() const { return (width + 2 * padding - kernel) / stride + 1; }
 };
 Values MaxPoolForward(const PoolShape& shape, const Values& x);
-// -> dx.
+// Returns dx.
 Values MaxPoolBackward(const PoolShape& shape, const Values& x, const Values& dy);
 
-// P planes of (height, width) to P planes of (out_height, out_width).
+// Pooling of P planes (height, width) to P planes (out_height, out_width).
 struct AveragePoolShape {
   int planes, height, width, out_height, out_width;
 };
 Values AveragePoolForward(const AveragePoolShape& shape, const Values& x);
 Values AveragePoolBackward(const AveragePoolShape& shape, const Values& dy);
 
-// P planes of (height, width) to (P, 2): mean column and row, each in [-1, 1], of a softmax over
+// P planes (height, width) to (P, 2): mean column and mean row, each in [-1, 1], of a softmax over
 // the plane.
 struct PointsShape {
   int planes, height, width;
@@ -63,7 +63,7 @@ struct PointsShape {
 };
 Values Points(const PointsShape& shape, const Values& x);
 
-// x (B, I), weight (O, I), bias (O) -> (B, O).
+// I inputs, O outputs: x (B, I), weight (O, I), bias (O) -> (B, O).
 Values LinearForward(int batch, const Values& x, const Values& weight, const Values& bias);
 Gradient LinearBackward(int batch, const Values& x, const Values& weight, const Values& dy);
 

@@ -17,7 +17,7 @@ namespace shoal::nn::reference {
 
 using Parameters = std::map<std::string, Values>;
 
-// The F32 tensors.
+// The F32 tensors as Values; other tensors are ignored.
 Parameters ToParameters(const TensorMap& tensors);
 
 // Output of an encoder's plan for frames (B, K*C, H, W) u8. Batch normalisation normalises by the
@@ -27,25 +27,26 @@ Values Features(const NetworkPlan& encoder, const Parameters& parameters, int ba
 
 class Network {
  public:
-  // Takes the F32 tensors; the others are ignored.
+  // Takes the F32 tensors; other tensors are ignored.
   Network(const TensorMap& tensors, const NetworkConfig& config, const ObservationSpec& spec);
 
   // One value of one parameter, for finite differences.
   double& at(const std::string& name, size_t index) { return parameters_.at(name).at(index); }
   const Parameters& parameters() const { return parameters_; }
 
-  // frames (B, K*C, H, W) u8 -> (B, N*h*w).
+  // Features of frames (B, K*C, H, W) u8: (B, N*h*w), N maps of (h, w).
   Values Features(int batch, const uint8_t* frames) const;
-  // Input of the MLPs of `head`: trunk of the features beside the vector (B, V).
+  // Input of the MLPs of `head`: the trunk's output for the features, joined with the vector (B,
+  // V).
   Values Observation(const std::string& head, int batch, const Values& features,
                      const Values& vector) const;
-  // `name`: actor.mlp, critic.q1, ... input (B, I).
+  // Output of the MLP `name` (actor.mlp, critic.q1, ...) for input (B, I), I: its input size.
   Values Mlp(const std::string& name, int batch, const Values& input) const;
   struct Gaussian {
     Values mean, log_std;  // (B, A)
   };
   Gaussian Actor(int batch, const Values& features, const Values& vector) const;
-  // q_i (B) of head.q1 and head.q2 for action (B, A).
+  // Values (B) of head.q1 and head.q2 for action (B, A).
   struct TwinQ {
     Values q1, q2;
   };

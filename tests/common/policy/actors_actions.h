@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Actions of the actor program with a checkpoint's policy: the reference for policies outside of
-// training.
+// Actions that the actor program computes with a checkpoint's policy: the reference for policies
+// outside of training.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace shoal::policy {
 
-// Actions of the evaluation actor.
+// Actions that the evaluation actor would choose, (N, A).
 inline std::vector<float> ActorsActions(const RunConfig& run,
                                         const std::filesystem::path& checkpoint,
                                         const RandomObservations& random) {

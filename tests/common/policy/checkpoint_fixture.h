@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checkpoints of small agents, written like those of the learner.
+// Checkpoints of small agents, written by the learner's code.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +18,8 @@
 
 namespace shoal::policy {
 
-// Observations of frames, an observed block, an unobserved block, and another observed block.
+// A run whose observations have frames (with `pixels`), an observed block, an unobserved block, and
+// another observed block.
 inline RunConfig SmallRun(const std::string& algorithm, bool pixels) {
   RunConfig run{learner::SmallConfig(), learner::SmallSpec()};
   run.config.learner.algorithm = algorithm;
@@ -39,7 +40,7 @@ inline RunConfig SmallRun(const std::string& algorithm, bool pixels) {
   return run;
 }
 
-// The same with another encoder and images of a size that the encoder accepts.
+// SmallRun from pixels with another encoder. `side`: size of images that the encoder accepts.
 inline RunConfig RunWithEncoder(const std::string& encoder, int side = 84) {
   RunConfig run = SmallRun("sac", /*pixels=*/true);
   run.config.network.encoder = encoder;
@@ -50,7 +51,7 @@ inline RunConfig RunWithEncoder(const std::string& encoder, int side = 84) {
   return run;
 }
 
-// Writes a checkpoint to FOLDER/checkpoints like the learner, and returns its folder.
+// Writes a checkpoint to FOLDER/checkpoints, like the learner. Returns the checkpoint's folder.
 inline std::filesystem::path Store(const RunConfig& run, const std::filesystem::path& folder,
                                    uint64_t updates, const nn::TensorMap& learner,
                                    const nn::TensorMap& policy) {
@@ -64,7 +65,7 @@ inline std::filesystem::path Store(const RunConfig& run, const std::filesystem::
   return folder / "checkpoints" / store.Write(state, learner, policy, {});
 }
 
-// Checkpoint of an agent after three updates on random numbers.
+// Writes the checkpoint of an agent after three updates on random numbers.
 inline std::filesystem::path WriteCheckpointOf(const RunConfig& run,
                                                const std::filesystem::path& folder) {
   const auto agent = learner::MakeAgent(run.config, run.spec, nn::Precision::kF32);
@@ -79,7 +80,8 @@ inline std::filesystem::path WriteCheckpointOf(const RunConfig& run,
   return Store(run, folder, agent->updates(), agent->AllTensors(), agent->AveragedPolicyTensors());
 }
 
-// Checkpoint of a policy with random parameters only, for encoders with large optimiser states.
+// Writes a checkpoint that contains only a policy with random parameters. For encoders whose
+// optimiser states would be large.
 inline std::filesystem::path WritePolicyOf(const RunConfig& run,
                                            const std::filesystem::path& folder) {
   nn::ParameterSet parameters(nn::PolicyParameters(run.config.network, run.spec),
@@ -114,7 +116,7 @@ struct RandomObservations {
   int count;
   std::vector<uint8_t> pixels;                                     // (N, K*C, H, W)
   std::vector<float> vectors;                                      // (N, V)
-  std::vector<std::pair<std::string, std::vector<float>>> blocks;  // the same, block by block
+  std::vector<std::pair<std::string, std::vector<float>>> blocks;  // `vectors`, block by block
 };
 
 }  // namespace shoal::policy

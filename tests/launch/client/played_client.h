@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A client and a coordinator's server on one link in memory and on simulated time, so that long
-// deadlines do not delay tests.
+// A client and a coordinator's server, connected by a link in memory. Time is simulated, so that
+// long deadlines do not delay tests.
 #pragma once
 
 #include <functional>
@@ -18,15 +18,15 @@
 
 namespace shoal::launch {
 
-// How a command ended.
+// Result of a command.
 struct PlayedClient {
   int code = -1;
-  std::string error;               // message of the Error that ended it
+  std::string error;               // message of the Error that ended the command
   std::vector<std::string> lines;  // printed lines
-  double seconds = -1;             // duration; below 0 if it has not ended within two hours
+  double seconds = -1;             // duration; below 0 if the command did not end in two hours
 };
 
-// A report with one figure.
+// A report with one metric.
 inline MetricsMessage ReportOf(const std::string& role, uint32_t id, const std::string& name,
                                double value) {
   MetricsMessage report;
@@ -38,16 +38,16 @@ inline MetricsMessage ReportOf(const std::string& role, uint32_t id, const std::
   return report;
 }
 
-// A coordinator: its views and its replies.
+// A simulated coordinator: publishes views and replies to commands.
 struct PlayedCoordinator {
   double uptime = 0;  // s, at the start
   bool accepts = true;
-  std::string text = "done";  // of its replies
+  std::string text = "done";  // text of the replies
   std::string state = "running";
-  std::vector<MetricsMessage> processes{};  // in addition to its own
-  int commands = 0;                         // number received
+  std::vector<MetricsMessage> processes{};  // reports in addition to the coordinator's own
+  int commands = 0;                         // number of received commands
 
-  // Serves for `span`.
+  // Answers commands and publishes views for the time `span`.
   void Serve(RunServer& server, std::chrono::milliseconds span) {
     const SteadyTime start = Now();
     while (Now() < start + span) {

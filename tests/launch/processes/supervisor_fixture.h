@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A supervisor of shell scripts that restarts within milliseconds.
+// Supervisor of shell scripts. Restarts have delays of milliseconds.
 #pragma once
 
 #include <gtest/gtest.h>

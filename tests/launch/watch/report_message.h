@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A process's report, as received from the network.
+// A process's report in the form in which the network delivers it.
 #pragma once
 
 #include <string>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gradients of one update, computed from Adam's first moment, which was 0 before: m = (1 - 0.9) g.
+// Gradients g of one update, computed from Adam's first moment m, which was 0 before: m = (1 - 0.9)
+// g.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,10 +15,11 @@
 
 namespace shoal::learner {
 
-constexpr double kFirstMoment = 0.1;  // share of the gradient after the first update
+constexpr double kFirstMoment = 0.1;  // m / g after the first update
 
-// Compares Adam's moments in the tensors `after` an update with central differences of `loss`,
-// which reads `network`: for some entries of each parameter whose name starts with `prefix`.
+// Compares Adam's moments in `after`, the tensors after an update, with central differences of
+// `loss`, which reads `network`. Compares some entries of each parameter whose name starts with
+// `prefix`.
 inline void ExpectMoments(const nn::TensorMap& after, const std::string& prefix,
                           nn::reference::Network* network, const std::function<double()>& loss) {
   int compared = 0;

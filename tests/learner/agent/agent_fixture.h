@@ -53,7 +53,7 @@ class RandomBatch {
   AlignedBytes memory_;
 };
 
-// 18x16 grey frames in stacks of 2, a vector of 2 and 2 actions.
+// Spec with 18x16 grey frames in stacks of 2, a vector of 2 numbers and 2 actions.
 inline ObservationSpec SmallSpec() {
   ObservationSpec spec;
   spec.task = "test";
@@ -79,7 +79,8 @@ inline Config SmallConfig() {
   return config;
 }
 
-// The figure; NaN, which never compares equal, if the update did not compute the figure.
+// The value of `figure` in the outcome. If the update did not compute the value, NaN, which never
+// compares equal.
 inline double Get(const UpdateOutcome& outcome, const Figure& figure) {
   return outcome.figures.Get(figure).value_or(std::nan(""));
 }
@@ -92,8 +93,8 @@ inline std::vector<float> Floats(const nn::TensorMap& tensors, const std::string
 }
 
 // Mean error of an agent's policy after 400 updates on a bandit with reward -(a - s0 / 2)^2, where
-// every step is terminal. `make` replaces MakeAgent. The best action is s0 / 2. The mean error of a
-// policy that ignores the state is 0.25, that of uniform actions 0.56.
+// every step is terminal and the best action is s0 / 2. `make` replaces MakeAgent. For comparison:
+// a policy that ignores the state has a mean error of 0.25, uniform actions have 0.56.
 template <class Make>
 float BanditError(Config config, Make make) {
   ObservationSpec spec;
@@ -128,7 +129,7 @@ float BanditError(Config config, Make make) {
 }
 
 // Adds noise to every value of the F32 tensors whose names start with `prefix`, so that target
-// networks differ as after many updates.
+// networks differ from the online networks as after many updates.
 inline nn::TensorMap Perturbed(nn::TensorMap tensors, const std::string& prefix) {
   Random random(11);
   for (auto& [name, tensor] : tensors) {
@@ -140,7 +141,7 @@ inline nn::TensorMap Perturbed(nn::TensorMap tensors, const std::string& prefix)
   return tensors;
 }
 
-// Names of the tensors that differ, among those that start with `prefix`.
+// Names of the tensors whose names start with `prefix` and whose values differ.
 inline std::vector<std::string> Differences(const nn::TensorMap& a, const nn::TensorMap& b,
                                             const std::string& prefix = "") {
   std::vector<std::string> names;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Grey pictures for bandits: a bright bar on a dark ground, and the error of an action.
+// Grey pictures for bandits: a bright bar on a dark background.
 #pragma once
 
 #include <cstddef>

@@ -22,7 +22,7 @@
 
 namespace shoal::learner {
 
-// The recorded batch of an update.
+// Fills `batch` with the recorded batch of an update.
 inline void FillSb3Batch(int update, const BatchView& batch) {
   const std::string at = "update" + std::to_string(update) + ".";
   FillSymmetric(at + "obs", 1.5, batch.obs_vector);
@@ -45,8 +45,9 @@ class Sb3Recording {
       : recorded_(nn::ReadSafetensors(ReadFile(GoldenPath("sb3/" + name + ".safetensors")), name)) {
   }
 
-  // Maps a layer of Stable-Baselines3 to a layer of Shoal (names without ".weight" and ".bias"), or
-  // to part number `part` of `parts` equal parts of it. `scale`: factor of the weights.
+  // Maps a layer of Stable-Baselines3 to a layer of Shoal, or to part number `part` of `parts`
+  // equal parts of Shoal's layer. The names are without ".weight" and ".bias". `scale`: factor of
+  // the weights.
   void Add(const std::string& ours, const std::string& theirs, int part = 0, int parts = 1,
            double scale = 1) {
     layers_.push_back({ours, theirs, part, parts, scale});
@@ -58,7 +59,7 @@ class Sb3Recording {
     Add(ours + ".output", theirs + ".4");
   }
 
-  // An agent's tensors with the initial weights of the recording.
+  // Returns the agent's `tensors` with the initial weights of the recording.
   nn::TensorMap WithTheirWeights(nn::TensorMap tensors) const {
     for (const Layer& layer : layers_) {
       const std::vector<int64_t> shape = tensors.at(layer.ours + ".weight").shape;
@@ -103,8 +104,9 @@ class Sb3Recording {
     }
   }
 
-  // Compares the gradients, computed from Adam's first moments before and after: m' = 0.9 m + 0.1
-  // g. `factor`: Shoal's loss divided by the recorded one, by layer. Returns the number of tensors.
+  // Compares the gradients g, computed from Adam's first moments before (m) and after (m') the
+  // update: m' = 0.9 m + 0.1 g. `factor`: Shoal's loss divided by the recorded loss, by layer.
+  // Returns the number of compared tensors.
   template <class Factor>
   int ExpectGradients(int update, const nn::TensorMap& before, const nn::TensorMap& after,
                       Factor factor) const {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An engine that records its operations, with their arrays and every number that the host passes,
-// and forwards them to another engine.
+// An engine that forwards its operations to another engine and records each operation with its
+// arrays and with every number that the host passes.
 #pragma once
 
 #include <string>

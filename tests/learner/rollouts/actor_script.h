@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records of an actor on policy, written by a test.
+// Records of an actor of an on-policy run, written by a test.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ class ActorScript {
     uint8_t* record = Add(env, episode, 0, RecordKind::kReset);
     for (float& x : layout_.Vector(record)) x = observation;
   }
-  // A step to `observation`; the reward equals the observation.
+  // Adds a step to `observation`; the reward equals the observation.
   void Step(uint32_t env, uint32_t episode, uint32_t index, float observation,
             const WeightsVersion& version = kFirst, uint8_t flags = 0) {
     uint8_t* record = Add(env, episode, index, RecordKind::kStep);
@@ -36,12 +36,12 @@ class ActorScript {
     for (float& x : layout_.Vector(record)) x = observation;
     for (float& x : layout_.DrawnAction(record)) x = 2 * observation;
   }
-  // Three steps from a reset.
+  // Adds a reset and three steps.
   void PlayThree(uint32_t env, uint32_t episode, const WeightsVersion& version = kFirst) {
     Reset(env, episode, 1);
     for (uint32_t i = 1; i <= 3; ++i) Step(env, episode, i, float(i + 1), version);
   }
-  // The records since the last chunk.
+  // The records that were added since the last chunk.
   TransitionChunk Chunk() {
     sent_ = std::move(records_);
     records_.clear();

@@ -19,49 +19,53 @@ namespace shoal::replay {
 // Fails the running test, fatally, if a batch differs from the oracle. Borrows the oracle.
 class BatchOracle {
  public:
-  // Elements checked so far.
+  // Numbers of elements checked so far.
   struct Counts {
     uint64_t first_frame_repeats = 0;
-    uint64_t short_samples = 0;  // fewer steps, because the last one terminated the episode
+    uint64_t short_samples = 0;  // fewer than n steps, because the last step terminated the episode
     uint64_t relabelled = 0;     // samples with a hindsight goal
-    uint64_t goals_before = 0;   // samples whose goal was achieved before they began
-    // Samples that ended at a step that reached their hindsight goal, and steps that ended their
-    // episode but not under the hindsight goal.
+    uint64_t goals_before = 0;   // samples whose goal was achieved before the sample began
+    // ended_by_goal: samples that ended at a step that reached the hindsight goal. went_on: steps
+    // that ended their episode, but do not end it under the hindsight goal.
     uint64_t ended_by_goal = 0, went_on = 0;
   };
 
   BatchOracle(const ReplayCase& kind, const Oracle& oracle)
       : kind_(kind), spec_(SpecOf(kind)), layout_(spec_), oracle_(oracle) {}
 
-  // Element b of a batch.
+  // Checks element b of a batch.
   void CheckElement(const BatchPlan::Element& element, size_t b, const BatchView& view);
-  // Checks probabilities: movement_share of the samples in proportion to the remaining motion, the
-  // rest uniformly over `sampleable`.
+  // Checks the probabilities: movement_share of the samples are drawn in proportion to the
+  // remaining motion, the other samples uniformly from `sampleable`.
   void CheckProbabilities(const BatchPlan& plan, const std::set<uint64_t>& sampleable) const;
   const Counts& counts() const { return counts_; }
 
  private:
-  // Cuts a sample off after the first step that ends the episode under the goal. Returns whether
-  // there is such a step.
+  // Cuts a sample after the first step that ends the episode under the goal. Returns whether there
+  // is such a step.
   bool EndUnderGoal(std::vector<uint64_t>* steps, uint64_t goal);
-  // An episode that the world ended has ended under every goal.
+  // Whether a step ends the episode under the goal. If the world ended the episode, it has ended
+  // under every goal.
   bool EndsUnderGoal(const Oracle::Stored& step, uint64_t goal) const;
   // Movement of the achieved goal from this step to the end of the episode.
   double Movement(uint64_t id) const;
   // Checks that the goal is stored, in the same episode, and at a step allowed by the hindsight
   // kind.
   void CheckGoal(const BatchPlan::Element& element);
-  // The reward: sparse for the goal of record `goal` if `goal` is an id, else the recorded one.
+  // The reward: the sparse reward for the goal of record `goal` if `goal` is an id, else the
+  // recorded reward.
   float Earned(const Oracle::Stored& step, uint64_t goal) const;
   double Distance(const Oracle::Stored& step, uint64_t goal) const;
-  // The script has three blocks of 2 numbers. The second, the achieved goal, is recorded only; so
-  // is the third, the desired goal, if a picture shows it.
+  // The observed numbers. The script has three blocks of 2 numbers. The second block, the achieved
+  // goal, is only recorded. The third block, the desired goal, is only recorded if a picture shows
+  // the goal.
   std::vector<float> Observed(const Oracle::Stored& stored, uint64_t goal) const;
   std::vector<float> Wanted(const Oracle::Stored& stored, uint64_t goal) const;
-  // Checks that no sample crosses the end of an episode: `before` belongs to it and did not end it.
+  // Checks that no sample crosses the end of an episode: `before` belongs to the episode of `last`
+  // and did not end this episode.
   void CheckContinues(const Oracle::Stored& before, const Oracle::Stored& last);
-  // Compares the frames of the ids (newest first), and that of the goal, with element b of
-  // `frames`, which has the oldest frame first and the goal last.
+  // Compares the frames of the ids (newest first), and the frame of the goal, with element b of
+  // `frames`, where the oldest frame is first and the goal is last.
   void CheckInput(std::vector<uint64_t> newest_first, uint64_t goal,
                   std::span<const uint8_t> frames, size_t b);
   void ExpectFloats(std::span<const float> expected, std::span<const float> all, size_t b);

@@ -25,7 +25,7 @@ struct ReplayCase {
   MovementKind movement = MovementKind::kPath;
 };
 
-// Goals are points of the plane. Those of RecordScript are spread over [-2, 2].
+// A task whose goals are points of the plane. The goals of RecordScript are spread over [-2, 2].
 inline tasks::Task TinyTask() {
   tasks::Task::Description description;
   description.name = description.world = "Tiny";

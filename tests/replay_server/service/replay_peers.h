@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rest of a run around a replay server: coordinator, actors and learner, all on one bus.
+// Coordinator, actors and learner for a replay server under test, all on one bus.
 #pragma once
 
 #include <atomic>
@@ -23,7 +23,7 @@
 
 namespace shoal::replay {
 
-// Joins as the learner (the one role besides the replay's that is on both domains). One test
+// Joins as the learner, because besides the replay only this role is on both domains. One test
 // thread.
 class ReplayPeers {
  public:
@@ -40,7 +40,8 @@ class ReplayPeers {
         parts_(bus_, [this](const BatchPart& part) { OnPart(part); }),
         metrics_(bus_, [this](const ReplayMetrics& m) { OnMetrics(m); }) {}
 
-  // A heartbeat. Every wait below sends them too, unless `silent`.
+  // Sends a heartbeat if the last is old enough. All waits below also send heartbeats, unless
+  // `silent`.
   void Beat() {
     if (silent || Now() - last_beat_ < std::chrono::milliseconds(200)) return;
     last_beat_ = Now();
@@ -50,7 +51,8 @@ class ReplayPeers {
     control_.Write({.epoch = 2, .state = RunState::kStopping, .time = WallTimeSeconds()});
   }
 
-  // Waits until `done` (called under the lock) or the deadline.
+  // Waits until `done`, which is called under the lock, returns true. Returns false at the
+  // deadline.
   bool WaitFor(const std::function<bool()>& done,
                std::chrono::seconds deadline = std::chrono::seconds(20)) {
     const SteadyTime end = Now() + deadline;
@@ -62,12 +64,13 @@ class ReplayPeers {
     }
   }
 
-  // Waits until the replay's readers are matched: later messages arrive.
+  // Waits until the replay's readers are matched, so that later messages arrive.
   bool WaitForReplay() {
     return WaitFor([this] { return chunks_.Matched() > 0 && requests_.Matched() > 0; });
   }
 
   // Sends the script's records up to `last` like a correct actor, until all are acknowledged.
+  // Returns false at the deadline.
   bool Deliver(RecordScript* script, uint64_t last) {
     const SteadyTime end = Now() + std::chrono::seconds(30);
     SteadyTime progress{};
@@ -98,9 +101,8 @@ class ReplayPeers {
   }
   bool Write(const TransitionChunk& chunk) { return chunks_.Write(chunk); }
 
-  // Requests a batch and assembles its parts, repeating the request like a learner. Empty if the
-  // batch
-  // does not arrive.
+  // Requests a batch and assembles its parts. Repeats the request like a learner. Empty if the
+  // batch does not arrive.
   std::vector<uint8_t> Batch(uint64_t request) {
     {
       const std::lock_guard lock(mutex_);
@@ -128,7 +130,7 @@ class ReplayPeers {
     const std::lock_guard lock(mutex_);
     return credit_[actor];
   }
-  // For use in WaitFor's predicate only.
+  // May be called only in the predicate of WaitFor, which holds the lock.
   const Credit& CreditLocked(uint32_t actor) { return credit_[actor]; }
   const std::map<std::string, double>& MetricsLocked() { return newest_metrics_; }
 

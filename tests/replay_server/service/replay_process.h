@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// shoal-replay in a process of its own, with its stderr in a file.
+// shoal-replay in a separate process, whose output is written to a file.
 #pragma once
 
 #include <fcntl.h>
@@ -50,8 +50,8 @@ class ReplayProcess {
     waitpid(pid_, nullptr, 0);
     pid_ = -1;
   }
-  // The exit code as in a shell, 128 + number of the signal that killed the process; empty if the
-  // process does not end before the deadline.
+  // The exit code in the form of shells: 128 + the signal's number if a signal killed the process.
+  // Empty if the process does not end before the deadline.
   std::optional<int> ExitCode(std::chrono::seconds deadline) {
     const SteadyTime end = Now() + deadline;
     int status = 0;

@@ -2,9 +2,9 @@
 // Grip positions of the original Fetch models in newer versions of MuJoCo: format vrl-xversion-1.
 //
 // The file contains no actions and no initial states. The actions of the sequences const_* and zero
-// follow from their names. The actions of the others, and the positions of object and goal, are
-// read from the trajectories of the same task (format vrl-ref-1, "fetch_Push_random0.json") in the
-// same folder.
+// follow from their names. The actions of other sequences, and the positions of object and goal,
+// are read from the trajectories of the same task in the same folder (format vrl-ref-1,
+// "fetch_Push_random0.json").
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ struct CrossVersionSequence {
   std::array<double, 3> initial_grip{};
   std::vector<std::array<double, 3>> grip;  // m, after each env step
 
-  // Found by ReadCrossVersions.
+  // These members are not in the file; ReadCrossVersions finds their values.
   std::array<double, 2> object_xy{};
   std::array<double, 3> desired_goal{};
   std::vector<std::array<double, 4>> actions{};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parity of the environments without goals: writes a recorded trajectory's initial state, replays
-// its actions and compares the state, the observation, the reward and whether the episode
+// Parity of the environments without goals. Sets the initial state of a recorded trajectory,
+// replays its actions and compares the state, the observation, the reward and whether the episode
 // terminates.
 #pragma once
 
@@ -11,9 +11,10 @@
 
 namespace shoal::worlds {
 
-// Hopper: the tolerance of every number is 1e-9. It is 1e-4 in `zero`, whose symmetric landing
-// amplifies the last digits; velocities and numbers derived from them are then only reported. The
-// recorded velocities are clipped in every variant, so Shoal's are compared after clipping.
+// Hopper: the tolerance of every number is 1e-9. In the sequence `zero` the tolerance is 1e-4,
+// because the symmetric landing amplifies the last digits; velocities and numbers derived from
+// velocities are then only reported. The recorded velocities are clipped in every variant, so
+// Shoal's velocities are clipped before the comparison.
 //
 // Control Suite: see kControlTolerance in the source. Throws Error on a file that cannot be read or
 // replayed; see ReadStateReference.

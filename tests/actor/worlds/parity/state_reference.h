@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recorded trajectory (format vrl-ref-1) of an environment without goals: Hopper or one of the
-// Control Suite. Shoal's physics is compared with it.
+// A recorded trajectory (format vrl-ref-1) of an environment without goals: Hopper or a task of the
+// Control Suite. Tests compare Shoal's physics with the trajectory.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace shoal::worlds {
 
-// Right after the reset or a control step, in the engine's units.
+// State right after the reset or after a control step, in the engine's units.
 struct StateSnapshot {
   std::vector<double> observation, qpos, qvel;
   int contacts = 0;
@@ -20,9 +20,9 @@ struct StateSnapshot {
 struct StateStep {
   std::vector<double> action;  // each in [-1, 1]
   StateSnapshot after;
-  double reward = 0;  // of the environment; for Hopper that of Hopper-v5
+  double reward = 0;  // the environment's reward; for Hopper, the reward of Hopper-v5
   std::optional<double> reward_hopper_v4;
-  std::optional<bool> healthy;  // Hopper
+  std::optional<bool> healthy;  // only Hopper
 };
 
 struct StateTrajectory {
@@ -31,7 +31,7 @@ struct StateTrajectory {
   std::string sequence;     // name of the action sequence: "random0"
   // The drawn state of a reset, before cheetah_run's settling.
   std::vector<double> drawn_qpos, drawn_qvel;
-  std::optional<std::array<double, 2>> target;  // reacher_easy, m
+  std::optional<std::array<double, 2>> target;  // only reacher_easy, m
   StateSnapshot reset;
   std::vector<StateStep> steps;
 };
@@ -40,9 +40,9 @@ struct StateTrajectory {
 std::string StateEnvironments();
 bool IsStateEnvironment(const std::string& environment);
 
-// Throws Error naming the file and the key: unreadable, not JSON, another format, an environment or
-// variant that cannot be replayed, a key missing, ill-typed, of the wrong length, not finite or
-// (actions) outside [-1, 1].
+// Throws Error naming the file and the key if the file is unreadable, is not JSON or has another
+// format; if the environment or variant cannot be replayed; or if a value is missing, ill-typed, of
+// the wrong length, not finite or (for actions) outside [-1, 1].
 StateTrajectory ReadStateReference(const std::filesystem::path& path);
 
 }  // namespace shoal::worlds

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares pictures of quality native with those of the engine's own renderer.
+// Compares pictures of quality native with pictures of the engine's own renderer.
 #pragma once
 
 #include <cstdint>
@@ -39,8 +39,8 @@ class RandomStates {
 struct PartAgreement {
   std::string name;
   int states = 0;  // states in which the engine shows at least kShownPixels
-  int missed = 0;  // of these: states in which quality native shows no pixel
-  int64_t engine = 0, ours = 0, both = 0;  // pixels
+  int missed = 0;  // those of `states` in which quality native shows no pixel
+  int64_t engine = 0, ours = 0, both = 0;  // pixels of the part: engine's, native's, in both
 
   double overlap() const;  // intersection over union
 };
@@ -51,10 +51,10 @@ struct CameraComparison {
   std::string task, camera;
   int states = 0;
   double mean_difference = 0, most_difference = 0;
-  // Intersection over union of the segments of a picture: all of them, and those of bodies that
-  // move, over all states.
+  // Intersection over union of the segments, over all states: mean and least value of a picture
+  // with all segments, and value of the segments of moving bodies.
   double mean_overlap = 0, least_overlap = 1, moving_overlap = 1;
-  std::vector<PartAgreement> parts;  // parts that either side shows, by name
+  std::vector<PartAgreement> parts;  // parts that at least one renderer shows, sorted by name
 };
 
 // Draws `states` random states with each of the task's cameras.
@@ -65,14 +65,15 @@ std::vector<std::string> TasksOfAllWorlds();
 
 bool IsFingerOrMarker(const PartAgreement& part);
 
-// Among parts with a mean of kShownPixels: fingers, goal markers and the part that agrees least.
+// Fingers, goal markers and, of the other parts with a mean of at least kShownPixels, the part that
+// agrees least.
 std::vector<PartAgreement> TellingParts(const CameraComparison& comparison);
 
 // Schema shoal-pictures-1: {schema, side, cameras: [...]}.
 nlohmann::ordered_json ToJson(const std::vector<CameraComparison>& comparisons);
 
-// RGB (H, W, 3): tasks side by side as their first cameras see them, the engine's pictures above
-// ours.
+// RGB (H, W, 3): pictures of tasks side by side, from the first camera of each task. The engine's
+// pictures are above those of quality native.
 struct PictureStrip {
   int width = 0, height = 0;
   std::vector<uint8_t> pixels;

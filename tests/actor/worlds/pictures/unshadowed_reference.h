@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The engine's own OpenGL renderer, set up as for quality `reference` but without shadows,
-// reflections and multisampling: the model for quality `native`.
+// reflections and multisampling. Quality `native` should give the same pictures.
 #pragma once
 
 #include <cstdint>
@@ -19,9 +19,9 @@ class UnshadowedReference {
   UnshadowedReference(const UnshadowedReference&) = delete;
   UnshadowedReference& operator=(const UnshadowedReference&) = delete;
 
-  // (3, H, W), row 0 = top.
+  // Returns the picture (3, H, W), row 0 = top.
   std::vector<uint8_t> Draw(mjvScene_* scene);
-  // (H, W): mjvGeom::segid of the front geom; -1 = none.
+  // Returns for each pixel (H, W) mjvGeom::segid of the front geom; -1 = no geom.
   std::vector<int> DrawSegments(mjvScene_* scene);
 
  private:

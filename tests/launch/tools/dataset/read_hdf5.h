@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contents of an HDF5 file, read with the HDF5 library.
+// Reads an HDF5 file with the HDF5 library.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ class Hdf5Reader {
   struct Array {
     std::vector<uint64_t> shape;
     H5T_class_t kind = H5T_NO_CLASS;  // H5T_FLOAT, H5T_INTEGER, H5T_ENUM
-    size_t bytes = 0;                 // of an element
+    size_t bytes = 0;                 // size of an element
   };
   Array Describe(const std::string& name) const {
     const hid_t array = H5Dopen2(file_, name.c_str(), H5P_DEFAULT);

@@ -15,7 +15,7 @@
 
 namespace shoal::launch {
 
-// One evaluation of schema shoal-eval-1 with these means. Without `success`, the task has no
+// One evaluation of schema shoal-eval-1 with these means. If `success` is empty, the task has no
 // success.
 inline nlohmann::ordered_json PlantedEvaluation(uint64_t env_steps, std::optional<double> success,
                                                 int episodes, double return_mean = -1) {

@@ -24,7 +24,8 @@ inline void PrintTo(const PolicyKind& kind, std::ostream* out) {
   *out << '"' << kind.encoder << '"';
 }
 
-// Small, and odd if the encoder accepts odd sizes: then alexnet's average pool has unequal windows.
+// A small spec. Sizes are odd if the encoder accepts odd sizes, so that alexnet's average pool has
+// unequal windows.
 inline ObservationSpec SpecFor(const std::string& encoder) {
   ObservationSpec spec;
   spec.task = "test";
@@ -60,9 +61,8 @@ inline policy::CheckpointPolicy RandomPolicy(const PolicyKind& kind, NetworkConf
   nn::Append(policy.description.Actor().Parameters(), &specs);
   nn::ParameterSet set(specs, nn::ParameterSet::Use::kInference);
   set.Initialise(7);
-  // Random changes, because initial biases, norms and statistics have special values. Variances
-  // stay
-  // positive.
+  // Adds random numbers, because initial biases, norms and statistics have special values.
+  // Variances stay positive.
   Random random(8);
   for (int64_t i = 0; i < set.size(); ++i) set.values()[i] += float(0.02 * random.Normal());
   set.Export(&policy.tensors);

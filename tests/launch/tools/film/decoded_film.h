@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plays an MP4 file with libav, for tests.
+// Decodes an MP4 file with libav, for tests.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The --help output of the built programs, parsed: a reference for man pages and completions that
-// does not depend on their generator.
+// The parsed --help output of the built programs. It is a reference for man pages and completions
+// that does not depend on their generator.
 #pragma once
 
 #include <set>
@@ -11,7 +11,7 @@ namespace shoal {
 
 struct HelpText {
   std::vector<std::string> words;  // {"shoal", "env", "render"}
-  std::string description;         // its first line
+  std::string description;         // first line of the description
   std::set<std::string> flags;     // "-h", "--help", "--camera"
   std::set<std::string> arguments;
   std::set<std::string> commands;
@@ -19,7 +19,7 @@ struct HelpText {
   std::string name() const;  // "shoal env render"
 };
 
-// The help of a program and each of its commands, as `PROGRAM ... --help` prints it.
+// The help of every program and of all its commands, from `PROGRAM ... --help`.
 const std::vector<HelpText>& AllHelp();
 
 // Path of the built file build/share/FILE.
