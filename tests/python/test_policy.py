@@ -198,6 +198,23 @@ def cores_in_fresh_python(program, **environment):
     return done.stdout.strip(), done.stderr
 
 
+def test_a_mapping_gives_the_numbers_of_the_observation_and_the_actions_bounds():
+    folder = str(checkpoint("sac-environment"))
+    policy, mapping = shoal_rl.Policy(folder), shoal_rl.Mapping(folder)
+    state = np.array([0.5, -1.25, 3.0])
+    arm = np.array([[1.0, -2.0], [3.5, 4.25]], np.float32)
+    observation = {"state": state, "robot": {"arm": arm}}
+    for inputs in (mapping.reset(observation), mapping.observe(observation)):
+        assert inputs["state"].tolist() == state.tolist()
+        assert inputs["robot.arm"].tolist() == arm.ravel().tolist()
+        assert all(array.dtype == np.float32 for array in inputs.values())
+    assert mapping.action(np.array([-1.0, 0.5], np.float32)).tolist() == [-2.0, 7.5]
+    plain = {"state": state.astype(np.float32), "robot.arm": arm.ravel()}
+    assert policy.act(inputs).tolist() == policy.act(plain).tolist()
+    changed = mapping.observe({"state": -state, "robot": {"arm": -arm}})
+    assert policy.act(changed).tolist() != policy.act(plain).tolist()
+
+
 @pytest.mark.skipif(len(os.sched_getaffinity(0)) < 2, reason="needs two cores")
 @pytest.mark.parametrize(
     "binding", [{"OMP_PROC_BIND": "true"}, {"OMP_PLACES": "cores"}, {"GOMP_CPU_AFFINITY": "0"}]

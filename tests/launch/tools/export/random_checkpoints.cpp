@@ -6,12 +6,14 @@
 // usage: random-checkpoints FOLDER [TEXT]
 //   FOLDER/ALGORITHM-ENCODER/checkpoints/step_N. ENCODER is "state" without pixels, "sb3" or
 //   "sb3-state" for networks that Stable-Baselines3 has (encoder nature alone, or vectors). SAC
-//   also has "asymmetric" (a critic of blocks), "taught" (sac.aux) and "separate" (an encoder of
-//   the actor's own). TEXT selects the checkpoints whose ALGORITHM-ENCODER contains it.
+//   also has "asymmetric" (a critic of blocks), "taught" (sac.aux), "separate" (an encoder of the
+//   actor's own) and "environment" (vectors of an environment in Python). TEXT selects the
+//   checkpoints whose ALGORITHM-ENCODER contains it.
 #include <fmt/core.h>
 
 #include <filesystem>
 
+#include "actor/hosted/hosted_spec.h"
 #include "common/base/main_guard.h"
 #include "common/nn/encoders/encoder_kind.h"
 #include "tests/common/policy/checkpoint_fixture.h"
@@ -44,6 +46,25 @@ RunConfig Sb3Run(const std::string& algorithm, bool pixels) {
   return run;
 }
 
+// Two blocks and two actions with bounds of their own.
+RunConfig EnvironmentRun() {
+  RunConfig run = policy::SmallRun("sac", /*pixels=*/false);
+  run.config.env.id = "Fake-v0";
+  run.spec = hosted::SpecOf(
+      {.id = "Fake-v0",
+       .task = "Fake-v0",
+       .episode_steps = 50,
+       .action = {.name = "action", .shape = {2}, .low = {-2, 0}, .high = {2, 10}},
+       .observation = {{.name = "state",
+                        .shape = {3},
+                        .type = tasks::ElementType::kFloat64,
+                        .low = {-5},
+                        .high = {5}},
+                       {.name = "robot.arm", .shape = {2, 2}, .low = {-9}, .high = {9}}}},
+      run.config);
+  return run;
+}
+
 int Main(const fs::path& folder, const std::string& text) {
   const auto write = [&](const std::string& name, const RunConfig& run) {
     if (name.find(text) != std::string::npos) Write(name, run, folder);
@@ -71,6 +92,7 @@ int Main(const fs::path& folder, const std::string& text) {
   run.config.network.encoders = "separate";
   run.config.network.target_encoder = true;
   write("sac-separate", run);
+  write("sac-environment", EnvironmentRun());
   return 0;
 }
 
