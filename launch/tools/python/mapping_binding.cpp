@@ -120,8 +120,8 @@ class Mapping {
     for (const BlockSpec& block : spec_.blocks) {
       const auto range = spec_.Observed(block.name);
       if (!range) continue;
-      // With a shape, not a count: for a count, pybind11 before 2.12 computes strides from a field
-      // of NumPy's types that NumPy 2 has moved, and every element would be the first.
+      // The constructor takes a shape: pybind11 before 2.12 computes the strides for a count from a
+      // field that NumPy 2 has moved, and every element would be the first.
       py::array_t<float> numbers(std::vector<py::ssize_t>{range->size});
       std::copy_n(seen_.data() + range->first, range->size, numbers.mutable_data());
       inputs[block.name.c_str()] = numbers;
