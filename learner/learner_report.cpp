@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "learner/learner_report.h"
 
+#include "common/base/check.h"
 #include "common/base/log.h"
 #include "common/config/on_policy.h"
 #include "learner/agent/frame_figures.h"
@@ -21,14 +22,21 @@ LearnerReport::LearnerReport(const ProcessName& name, const RunConfig& run)
       guard_(run.config),
       report_(name) {}
 
-void LearnerReport::OnUpdate(const UpdateFigures& figures, const Batch& batch, uint64_t updates) {
-  UpdateFigures all = figures;
-  AddSampleFigures(batch.view, spec_, &all);
-  if (window_.updates() % kFrameFiguresEvery == 0) {
-    AddFrameFigures(batch.view, spec_, shift_pad_, &all);
+void LearnerReport::OnBatch(const Batch& batch, uint64_t updates) {
+  UpdateFigures& figures = batches_.emplace_back();
+  AddSampleFigures(batch.view, spec_, &figures);
+  if (window_batches_++ % kFrameFiguresEvery == 0) {
+    AddFrameFigures(batch.view, spec_, shift_pad_, &figures);
   }
-  window_.Add(all);
   AddDataAges(batch.view.weights_update, updates, &data_ages_);
+}
+
+void LearnerReport::OnUpdate(const UpdateFigures& figures) {
+  CHECK(!batches_.empty());
+  UpdateFigures all = figures;
+  for (const auto& [figure, value] : batches_.front().entries()) all.Set(*figure, value);
+  batches_.pop_front();
+  window_.Add(all);
 }
 
 const MetricsMessage& LearnerReport::Make(const LearnerFigures& figures) {
@@ -42,6 +50,7 @@ const MetricsMessage& LearnerReport::Make(const LearnerFigures& figures) {
     }
   }
   window_.Clear();
+  window_batches_ = 0;
   const auto add = [&](const std::string& name, auto value) {
     report_.Add(name, static_cast<double>(value));
   };

@@ -16,6 +16,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <string>
 
 #include "common/config/run_config.h"
@@ -56,7 +57,10 @@ class LearnerReport {
  public:
   LearnerReport(const ProcessName& name, const RunConfig& run);
 
-  void OnUpdate(const UpdateFigures& figures, const Batch& batch, uint64_t updates);
+  // Call for each batch when its update has begun. `updates`: number of updates with this one.
+  void OnBatch(const Batch& batch, uint64_t updates);
+  // Call when the update's figures are known. Updates are those of the batches in order.
+  void OnUpdate(const UpdateFigures& figures);
   // Once a second.
   bool Due() { return report_.Due(Now()); }
   // Ends the interval: logs warnings and returns the metrics, valid until the next call.
@@ -72,8 +76,10 @@ class LearnerReport {
   TrainingGuard guard_;
   MetricsReport report_;
   UpdateWindow window_;
-  UpdateFigures latest_;       // each figure's mean over the last interval that had it
-  uint64_t updates_made_ = 0;  // by this process
+  std::deque<UpdateFigures> batches_;  // figures of batches whose updates are not known yet
+  int window_batches_ = 0;             // batches of the current interval
+  UpdateFigures latest_;               // each figure's mean over the last interval that had it
+  uint64_t updates_made_ = 0;          // by this process
   QuantileWindow data_ages_;
   Quantiles data_age_;  // of the last interval with updates
 };

@@ -31,6 +31,7 @@ TrainingLoop::TrainingLoop(const Parts& parts, const std::optional<CheckpointSta
                    parts.sink),
       report_(parts.name, parts.run),
       on_policy_(LearnsOnPolicy(config_)),
+      finite_updates_(parts_.agent.updates()),
       threads_(parts.threads),
       threads_asked_(parts.threads),
       budget_(static_cast<uint64_t>(config_.env_steps)),
@@ -75,24 +76,22 @@ bool TrainingLoop::TryTrain() {
     const ScopedSeconds timed(seconds_.waiting);
     batch = parts_.batches.Next(Now() + kPoll);
   }
-  if (!batch) return false;
-  const UpdateOutcome outcome = Update(batch->view);
-  if (!outcome.finite) {
-    const std::optional<uint64_t> saved = parts_.checkpoints.WrittenUpdates();
-    throw NonFiniteError("{}; last good checkpoint: {}",
-                         DescribeNonFinite(outcome.figures, parts_.agent.updates()),
-                         saved ? CheckpointName(*saved) : "none");
+  if (!batch) {
+    FinishUpdates();  // the report of an idle learner lacks no update
+    return false;
   }
-  parts_.update_page.SetDone(parts_.agent.updates());
-  AfterUpdate(*batch, outcome.figures);
+  const std::vector<UpdateOutcome> outcomes = Submit(batch->view);
+  report_.OnBatch(*batch, parts_.agent.updates());
+  OnOutcomes(outcomes);
+  AfterUpdate(*batch);
   waiting_since_ = Now();
   return true;
 }
 
-UpdateOutcome TrainingLoop::Update(const BatchView& batch) {
+std::vector<UpdateOutcome> TrainingLoop::Submit(const BatchView& batch) {
   SteadyTime since = Now();
   updating_ = true;
-  UpdateOutcome outcome = parts_.agent.Update(batch, [&](UpdateStage stage) {
+  std::vector<UpdateOutcome> outcomes = parts_.agent.Submit(batch, [&](UpdateStage stage) {
     const SteadyTime now = Now();
     seconds_.update[static_cast<size_t>(stage)] +=
         std::chrono::duration<double>(now - std::exchange(since, now)).count();
@@ -100,21 +99,34 @@ UpdateOutcome TrainingLoop::Update(const BatchView& batch) {
     if (on_policy_) Report();
   });
   updating_ = false;
-  return outcome;
+  return outcomes;
 }
 
-void TrainingLoop::AfterUpdate(const Batch& batch, const UpdateFigures& figures) {
+void TrainingLoop::FinishUpdates() { OnOutcomes(parts_.agent.Finish()); }
+
+void TrainingLoop::OnOutcomes(const std::vector<UpdateOutcome>& outcomes) {
+  for (const UpdateOutcome& outcome : outcomes) {
+    if (!outcome.finite) {
+      const std::optional<uint64_t> saved = parts_.checkpoints.WrittenUpdates();
+      throw NonFiniteError("{}; last good checkpoint: {}",
+                           DescribeNonFinite(outcome.figures, finite_updates_),
+                           saved ? CheckpointName(*saved) : "none");
+    }
+    parts_.update_page.SetDone(++finite_updates_);
+    report_.OnUpdate(outcome.figures);
+  }
+}
+
+void TrainingLoop::AfterUpdate(const Batch& batch) {
   const uint64_t updates = parts_.agent.updates();
   env_steps_ = batch.view.stored_steps;
   unsampleable_steps_ = batch.unsampleable_steps;
   request_ = batch.request;
-  report_.OnUpdate(figures, batch, updates);
   if (on_policy_) {
     TellProgress();  // the budget counts whole rollouts
     GiveAwaitedWeights();
   } else {
-    const ScopedSeconds timed(seconds_.weights);
-    weights_.AfterUpdate(env_steps_);
+    SendDueWeights();
   }
   if (evaluations_.Reached(env_steps_)) {
     MakeEvaluationPoint();
@@ -123,8 +135,16 @@ void TrainingLoop::AfterUpdate(const Batch& batch, const UpdateFigures& figures)
   }
 }
 
+void TrainingLoop::SendDueWeights() {
+  if (!weights_.DueAfterUpdate()) return;
+  const ScopedSeconds timed(seconds_.weights);
+  FinishUpdates();
+  weights_.Send(env_steps_);
+}
+
 void TrainingLoop::GiveAwaitedWeights() {
   const ScopedSeconds timed(seconds_.weights);
+  FinishUpdates();
   if (given_weights_ == parts_.agent.updates()) return weights_.Retry(env_steps_);
   // Without new weights the actors begin no further rollout.
   if (env_steps_ >= budget_ || drain_start_) return;
@@ -154,9 +174,10 @@ void TrainingLoop::TellProgress() {
 }
 
 std::string TrainingLoop::WriteCheckpoint() {
+  const ScopedSeconds timed(seconds_.checkpoint);
+  FinishUpdates();
   const uint64_t updates = parts_.agent.updates();
   if (checkpoint_of_ == updates) return CheckpointName(updates);
-  const ScopedSeconds timed(seconds_.checkpoint);
   const CheckpointState state{.updates = updates,
                               .env_steps = env_steps_,
                               .request = request_,
@@ -235,6 +256,7 @@ void TrainingLoop::ApplySettings() {
 void TrainingLoop::ApplyThreads(int asked) {
   if (asked == threads_asked_ || parts_.resize == nullptr || on_policy_) return;
   threads_asked_ = asked;
+  FinishUpdates();
   threads_ = parts_.resize(asked);
 }
 

@@ -78,9 +78,14 @@ class TrainingLoop {
  private:
   // Waits briefly for a batch and trains with it. Returns false if none came.
   bool TryTrain();
-  // Performs the agent's update and measures the time of its stages.
-  UpdateOutcome Update(const BatchView& batch);
-  void AfterUpdate(const Batch& batch, const UpdateFigures& figures);
+  // Submits the batch to the agent and measures the time of the update's stages.
+  std::vector<UpdateOutcome> Submit(const BatchView& batch);
+  // Waits for the updates in flight. Call it before anything leaves the agent: weights,
+  // checkpoints, the state of a resized agent. Throws Error if an update is not finite.
+  void FinishUpdates();
+  // Counts and reports updates whose outcomes are known. Throws Error if one is not finite.
+  void OnOutcomes(const std::vector<UpdateOutcome>& outcomes);
+  void AfterUpdate(const Batch& batch);
   void MakeEvaluationPoint();
   // Writes a checkpoint of the agent's current state, unless the newest checkpoint already
   // holds this state. Returns the checkpoint's name.
@@ -99,6 +104,8 @@ class TrainingLoop {
   bool RatioReached() const;
   // On policy: sends the weights for which actors wait, once; not beyond the budget.
   void GiveAwaitedWeights();
+  // Off policy: sends weights if they are due after this update.
+  void SendDueWeights();
   // Applies settings that were changed during the run.
   void ApplySettings();
   void ApplyThreads(int asked);
@@ -115,6 +122,7 @@ class TrainingLoop {
   LearnerReport report_;
   LearnerSeconds seconds_;
   const bool on_policy_;
+  uint64_t finite_updates_;                // updates that are known to be finite
   int threads_, threads_asked_;            // current number; number of the last request
   uint64_t budget_;                        // current budget, env steps
   std::optional<uint64_t> given_weights_;  // on policy: update of the weights sent last

@@ -20,11 +20,9 @@ WeightsSender::WeightsSender(const RunConfig& run, nn::Precision precision, uint
       awaited_(config_.lockstep || LearnsOnPolicy(config_)),
       period_(static_cast<uint64_t>(config_.learner.weights_period)) {}
 
-void WeightsSender::AfterUpdate(uint64_t env_steps) {
+bool WeightsSender::DueAfterUpdate() {
   due_ = due_ || Due(agent_.updates());
-  if (!due_) return;
-  if (!awaited_ && Now() - last_sent_ < kPatience && !sink_.WeightsArrived()) return;
-  Send(env_steps);
+  return due_ && (awaited_ || Now() - last_sent_ >= kPatience || sink_.WeightsArrived());
 }
 
 void WeightsSender::Send(uint64_t env_steps) {

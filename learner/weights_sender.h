@@ -28,9 +28,9 @@ class WeightsSender {
   WeightsSender(const RunConfig& run, nn::Precision precision, uint64_t session, const Agent& agent,
                 LearnerSink& sink);
 
-  // Call this function after each update. Sends weights if they are due.
-  void AfterUpdate(uint64_t env_steps);
-  // Sends weights now. Used after a restart, so that actors need not wait.
+  // Call after each update. Returns whether it is time to send.
+  bool DueAfterUpdate();
+  // Sends at once. No update of the agent may be in flight.
   void Send(uint64_t env_steps);
 
   // If the transport did not accept weights for which actors wait, sends the weights again.

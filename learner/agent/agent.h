@@ -7,10 +7,15 @@
 // (learner/agent/ALGORITHM) and computes with an Engine; algorithms.h lists the algorithms.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "common/base/check.h"
 #include "common/nn/safetensors.h"
 #include "common/wire/batch_schema.h"
 #include "learner/agent/update_figures.h"
@@ -29,7 +34,8 @@ struct UpdateOutcome {
   // Figures that an update does not compute are absent (for example, the actor's figures if the
   // update does not train the actor).
   UpdateFigures figures;
-  // False if the batch, a loss or a gradient is not finite; the agent is then unchanged.
+  // False if the batch, a loss or a gradient is not finite. The agent then is as it was before the
+  // update; updates that were in flight behind it had no effect and have no outcome.
   bool finite = true;
 };
 
@@ -38,13 +44,25 @@ class Agent {
  public:
   virtual ~Agent() = default;
 
-  UpdateOutcome Update(const BatchView& batch) {
-    return Update(batch, [](UpdateStage) {});
+  // Performs one update and waits for its outcome. No other update may be in flight.
+  UpdateOutcome Update(
+      const BatchView& batch, const OnStageEnd& on_stage_end = [](UpdateStage) {}) {
+    std::vector<UpdateOutcome> outcomes = Submit(batch, on_stage_end);
+    std::ranges::move(Finish(), std::back_inserter(outcomes));
+    CHECK(outcomes.size() == 1) << outcomes.size();
+    return std::move(outcomes.front());
   }
-  // Performs one update. It depends only on the agent's state and the batch: random draws of update
-  // u come from the stream (seed, kLearnerUpdate, u). CHECKs the batch's size.
-  virtual UpdateOutcome Update(const BatchView& batch, const OnStageEnd& on_stage_end) = 0;
-  // Number of updates done, including those before a checkpoint.
+
+  // Performs one update, or begins it: an agent may have several updates in flight, whose outcomes
+  // are not known yet. Returns the outcomes that have become known, in the order of updates. An
+  // update depends only on the agent's state and the batch: random draws of update u come from the
+  // stream (seed, kLearnerUpdate, u). CHECKs the batch's size. Borrows the batch for the call.
+  virtual std::vector<UpdateOutcome> Submit(const BatchView& batch,
+                                            const OnStageEnd& on_stage_end) = 0;
+  // Waits for all updates in flight and returns their outcomes. Required before the functions below
+  // that read or write tensors.
+  virtual std::vector<UpdateOutcome> Finish() { return {}; }
+  // Number of updates done or in flight, including those before a checkpoint.
   virtual uint64_t updates() const = 0;
 
   // F32 parameters that an actor needs, with the names that nn::Policy::Load reads.

@@ -2,7 +2,6 @@
 #include "learner/agent/figure_sheet.h"
 
 #include <cmath>
-#include <utility>
 
 #include "learner/agent/sample_figures.h"
 
@@ -25,10 +24,10 @@ void FigureSheet::SetCritic(const CriticNumbers& numbers, Number gradient_square
   Set(kQMinMax, numbers.q_min_max);
 }
 
-UpdateFigures FigureSheet::Take(const Engine& engine, const Engine::Outcome& outcome) {
+UpdateFigures FigureSheet::Read(const Engine& engine, const Engine::Outcome& outcome) const {
   UpdateFigures figures;
-  for (const Entry& entry : std::exchange(entries_, {})) {
-    if (!outcome.batch_finite) continue;
+  if (!outcome.batch_finite) return figures;
+  for (const Entry& entry : entries_) {
     const double value = entry.number ? engine.Read(entry.number) : entry.value;
     figures.Set(*entry.figure, entry.root ? std::sqrt(value) : value);
   }

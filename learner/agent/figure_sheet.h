@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The metrics (Figure) of an update during its computation. The sheet assigns a number of the
-// engine to each metric, and reads the numbers after the end of the update.
+// The figures of an update until its outcome is known. The sheet maps each figure to a number of
+// the engine, and then reads the numbers.
 #pragma once
 
 #include <span>
@@ -29,9 +29,9 @@ class FigureSheet {
   // Sets all metrics of a critic: loss, targets, gradient and values of the Q functions.
   void SetCritic(const CriticNumbers& numbers, Number gradient_squares);
 
-  // Reads the metrics that were set since the last call. Call it after Engine::End. Returns no
-  // metrics if the batch was not finite.
-  UpdateFigures Take(const Engine& engine, const Engine::Outcome& outcome);
+  // Reads the figures. `outcome`: the update's, which the engine returned last. Returns no figures
+  // if the batch was not finite.
+  UpdateFigures Read(const Engine& engine, const Engine::Outcome& outcome) const;
 
  private:
   struct Entry {

@@ -28,30 +28,53 @@ class ReplicatedAgent final : public Agent {
   }
 
   // Reports the stages of the first replica, which runs on the caller's thread.
-  UpdateOutcome Update(const BatchView& batch, const OnStageEnd& on_stage_end) override {
-    std::vector<UpdateOutcome> outcomes(agents_.size());
+  std::vector<UpdateOutcome> Submit(const BatchView& batch,
+                                    const OnStageEnd& on_stage_end) override {
+    ++in_flight_;
     exchange_.SetPatient(!team_.crowded());
-    team_.Run([&](int rank) {
-      outcomes[size_t(rank)] = agents_[size_t(rank)]->Update(
+    return OnEach([&](Agent& agent, int rank) {
+      return agent.Submit(
           batch, rank == 0 ? on_stage_end : [](UpdateStage) {});
     });
-    for (const UpdateOutcome& outcome : outcomes) {
-      CHECK(outcome.finite == outcomes[0].finite) << "replicas disagree";
-    }
-    return std::move(outcomes[0]);
+  }
+  std::vector<UpdateOutcome> Finish() override {
+    if (in_flight_ == 0) return {};
+    return OnEach([](Agent& agent, int) { return agent.Finish(); });
   }
   uint64_t updates() const override { return agents_[0]->updates(); }
-  nn::TensorMap PolicyTensors() const override { return agents_[0]->PolicyTensors(); }
+  nn::TensorMap PolicyTensors() const override { return Finished().PolicyTensors(); }
   nn::TensorMap AveragedPolicyTensors() const override {
-    return agents_[0]->AveragedPolicyTensors();
+    return Finished().AveragedPolicyTensors();
   }
-  nn::TensorMap AllTensors() const override { return agents_[0]->AllTensors(); }
+  nn::TensorMap AllTensors() const override { return Finished().AllTensors(); }
   // The first replica refuses bad tensors before any replica changes.
   void Restore(const nn::TensorMap& tensors, const std::string& source) override {
+    Finished();
     for (const auto& agent : agents_) agent->Restore(tensors, source);
   }
 
  private:
+  // Calls `call` for each replica, by the replica's thread, and returns the outcomes that it
+  // returns, which are the same for all replicas.
+  using Call = std::function<std::vector<UpdateOutcome>(Agent& agent, int rank)>;
+  std::vector<UpdateOutcome> OnEach(const Call& call) {
+    std::vector<std::vector<UpdateOutcome>> outcomes(agents_.size());
+    team_.Run([&](int rank) { outcomes[size_t(rank)] = call(*agents_[size_t(rank)], rank); });
+    for (const std::vector<UpdateOutcome>& known : outcomes) {
+      CHECK(std::ranges::equal(known, outcomes[0], {}, &UpdateOutcome::finite,
+                               &UpdateOutcome::finite))
+          << "replicas disagree";
+    }
+    for (const UpdateOutcome& outcome : outcomes[0]) {
+      in_flight_ = outcome.finite ? in_flight_ - 1 : 0;
+    }
+    return std::move(outcomes[0]);
+  }
+  // The first replica, if no update is in flight.
+  const Agent& Finished() const {
+    CHECK(in_flight_ == 0) << in_flight_ << " updates are in flight";
+    return *agents_[0];
+  }
   // Makes a replica on the thread that will run it.
   std::unique_ptr<Agent> MakeOne(const Config& config, nn::Precision precision, int own,
                                  const MakeReplica& make) {
@@ -76,6 +99,7 @@ class ReplicatedAgent final : public Agent {
   std::deque<CpuEngine> engines_;
   std::vector<std::unique_ptr<Agent>> agents_;
   nn::Team team_;
+  int in_flight_ = 0;  // updates without an outcome
 };
 
 }  // namespace

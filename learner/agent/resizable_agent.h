@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "learner/agent/agent.h"
 
@@ -20,15 +21,16 @@ class ResizableAgent final : public Agent {
   ResizableAgent(Make make, int threads)
       : make_(std::move(make)), threads_(threads), agent_(make_(threads)) {}
 
-  // Changes the number of threads. Call it between updates. The call takes as long as making an
-  // agent. Throws the errors of `make`; the agent does not change then.
+  // Changes the number of threads. No update may be in flight. Takes as long as making an agent.
+  // Throws the errors of `make`; the agent is then unchanged.
   void Resize(int threads);
   int threads() const { return threads_; }
 
-  using Agent::Update;
-  UpdateOutcome Update(const BatchView& batch, const OnStageEnd& on_stage_end) override {
-    return agent_->Update(batch, on_stage_end);
+  std::vector<UpdateOutcome> Submit(const BatchView& batch,
+                                    const OnStageEnd& on_stage_end) override {
+    return agent_->Submit(batch, on_stage_end);
   }
+  std::vector<UpdateOutcome> Finish() override { return agent_->Finish(); }
   uint64_t updates() const override { return agent_->updates(); }
   nn::TensorMap PolicyTensors() const override { return agent_->PolicyTensors(); }
   nn::TensorMap AveragedPolicyTensors() const override { return agent_->AveragedPolicyTensors(); }

@@ -87,7 +87,7 @@ Transitions CpuEngine::Take(const BatchView& batch) {
           .log_prob = HostArray(own.log_prob)};
 }
 
-Engine::Outcome CpuEngine::End() {
+std::optional<Engine::Outcome> CpuEngine::End() {
   CHECK(updating_);
   updating_ = false;
   if (outcome_.finite) return outcome_;
@@ -97,6 +97,11 @@ Engine::Outcome CpuEngine::End() {
     step.optimiser->Undo();
     for (nn::Module* module : step.changed) module->Refresh();
   });
+  return outcome_;
+}
+
+Engine::Outcome CpuEngine::WaitOutcome() {
+  CHECK(false) << "no update is in flight";
   return outcome_;
 }
 

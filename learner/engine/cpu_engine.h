@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The engine of the CPU: arrays in host memory, modules on oneDNN, operations as plain loops.
+// The engine of the CPU: arrays in host memory, modules on oneDNN, operations as plain loops. End
+// returns the outcome of the update that it ends.
 //
 // Each replica (common/nn/replica.h) has its own engine. Replicas exchange means over the whole
 // batch, and the arrays that figures of the whole batch need, together with the gradients, so an
@@ -34,7 +35,8 @@ class CpuEngine final : public Engine {
 
   void Begin(const BatchView& drawn) override;
   Transitions Take(const BatchView& batch) override;
-  Outcome End() override;
+  std::optional<Outcome> End() override;
+  Outcome WaitOutcome() override;
   double Read(Number number) const override;
   std::vector<float> ReadRows(Array array) const override;
   std::vector<double> ReadMoments(Moments moments) const override;

@@ -13,6 +13,12 @@
 // a loss or a gradient that is not finite clears it for the rest of the update. While the flag is
 // cleared, steps and moves have no effect; End undoes the steps made before.
 //
+// An update that has ended is in flight until its outcome is returned, by its own End, by the End
+// of a later update, or by WaitOutcome. Outcomes are returned in the order of the updates. An
+// engine that several replicas use decides by the number of updates in flight when End returns an
+// outcome, not by time, so that replicas agree. If an outcome is not finite, the updates that are
+// still in flight had no effect and have no outcome.
+//
 // Each of several replicas has b rows of each batch of B rows. Losses and gradients are means over
 // the replica's rows; Gather turns them into means over the whole batch. All replicas call the same
 // functions in the same order.
@@ -24,6 +30,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -54,8 +61,8 @@ class Engine {
   virtual Number NewNumber() = 0;
   // Makes moments (moments.h) of vectors of `width` numbers, without any vector so far.
   virtual Moments NewMoments(int width) = 0;
-  // Sets a number that later operations read, for example the rate of a schedule. The operations
-  // themselves stay the same. Not within an update.
+  // Sets a number that the operations of later updates read, for example the rate of a schedule.
+  // The operations themselves stay the same. Not within an update.
   virtual void Set(Number number, double value) = 0;
   // Copies this replica's rows of `values` (B, columns) to the array. Not within an update.
   virtual void Put(std::span<const float> values, Array array) = 0;
@@ -65,21 +72,31 @@ class Engine {
   // Begins an update. Sets the flag if every float of `drawn`, the whole batch, is finite, else
   // clears it.
   virtual void Begin(const BatchView& drawn) = 0;
-  // Returns this replica's rows of the whole batch `batch`, which is borrowed.
+  // Returns this replica's rows of the whole batch `batch`, which is borrowed until End.
   virtual Transitions Take(const BatchView& batch) = 0;
   struct Outcome {
     bool finite = true;        // the flag
     bool batch_finite = true;  // false: all results of this update are useless
     bool held = false;         // HoldSteps has disabled the steps
   };
-  // Ends the update and reads the flag. If the flag is cleared, parameters, moments and statistics
-  // are the same as before Begin.
-  virtual Outcome End() = 0;
-  // Not within an update.
+  // Ends the update. If the flag is cleared, parameters, moments and statistics are the same as
+  // before Begin. Returns the outcome of the oldest update in flight, or nullopt if the engine lets
+  // more updates be in flight first. An engine that waits for each update returns its outcome.
+  virtual std::optional<Outcome> End() = 0;
+  // Waits for the oldest update in flight, and returns its outcome. CHECKs that there is one. Not
+  // within an update.
+  virtual Outcome WaitOutcome() = 0;
+  // Ends the update and waits for its outcome. No other update may be in flight.
+  Outcome EndAndWait() {
+    const std::optional<Outcome> outcome = End();
+    return outcome ? *outcome : WaitOutcome();
+  }
+  // Reads a number as it was at the end of the update whose outcome was returned last. Not within
+  // an update.
   virtual double Read(Number number) const = 0;
-  // Reads this replica's rows. Not within an update.
+  // Waits for all updates in flight, and reads this replica's rows. Not within an update.
   virtual std::vector<float> ReadRows(Array array) const = 0;
-  // Not within an update.
+  // Waits for all updates in flight. Not within an update.
   virtual std::vector<double> ReadMoments(Moments moments) const = 0;
   virtual void SetMoments(Moments moments, std::span<const double> values) = 0;
 

@@ -60,9 +60,10 @@ class StillAgent final : public learner::Agent {
     parameters_.Initialise(1);
   }
 
-  learner::UpdateOutcome Update(const BatchView&, const learner::OnStageEnd&) override {
+  std::vector<learner::UpdateOutcome> Submit(const BatchView&,
+                                             const learner::OnStageEnd&) override {
     ++updates_;
-    return {};
+    return std::vector<learner::UpdateOutcome>(1);
   }
   uint64_t updates() const override { return updates_; }
   nn::TensorMap PolicyTensors() const override {

@@ -40,13 +40,45 @@ TEST(LearnerReport, FramesAreThoseOfTheFirstOfSixteenUpdatesOfAReport) {
       batch.view.obs_frames[i] = uint8_t(i % 2 == 0 ? 0 : update * update / 2);
     }
     if (update % 16 == 0) expected += SpreadOf(batch.view, run.spec) / 2;
-    report.OnUpdate({}, batch, update);
+    report.OnBatch(batch, update);
+    report.OnUpdate({});
   }
   EXPECT_GT(expected, 10);
   EXPECT_EQ(ValueOf(report.Make({}), "frame_spread"), expected);
-  report.OnUpdate({}, batch, 17);
+  report.OnBatch(batch, 17);
+  report.OnUpdate({});
   EXPECT_EQ(ValueOf(report.Make({}), "frame_spread"), SpreadOf(batch.view, run.spec))
       << "the first of each report";
+}
+
+// An update whose outcome is known in a later report belongs to that report, with its batch.
+TEST(LearnerReport, TheFiguresOfABatchAreReportedWithItsUpdate) {
+  const RunConfig run{SmallConfig(), SmallSpec()};
+  LearnerReport report({.role = "learner"}, run);
+  const RandomBatch random(run.spec, run.config.learner.batch, 1);
+  const Batch batch{.view = random.View()};
+  const auto begin = [&](uint64_t update) {
+    for (float& reward : batch.view.reward) reward = float(update);
+    report.OnBatch(batch, update);
+  };
+  const auto end = [&](double loss) {
+    UpdateFigures figures;
+    figures.Set(kCriticLoss, loss);
+    report.OnUpdate(figures);
+  };
+  begin(1);
+  begin(2);
+  begin(3);
+  end(10);
+  end(30);
+  const MetricsMessage first = report.Make({});
+  EXPECT_EQ(ValueOf(first, "critic_loss"), 20);
+  EXPECT_EQ(ValueOf(first, "reward_mean"), 1.5);
+  begin(4);
+  end(50);
+  const MetricsMessage second = report.Make({});
+  EXPECT_EQ(ValueOf(second, "critic_loss"), 50);
+  EXPECT_EQ(ValueOf(second, "reward_mean"), 3);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -15,9 +16,13 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
+#include "common/run_folder/run_file_names.h"
 #include "learner/agent/algorithms.h"
+#include "learner/agent/replicated_agent.h"
 #include "learner/training_loop.h"
+#include "tests/learner/engine/deferring_engine.h"
 #include "tests/learner/played_parts.h"
 #include "tests/learner/training_fixture.h"
 #include "tests/support/temporary_folder.h"
@@ -31,10 +36,12 @@ class SlowAgent final : public Agent {
  public:
   explicit SlowAgent(std::unique_ptr<Agent> agent) : agent_(std::move(agent)) {}
 
-  UpdateOutcome Update(const BatchView& batch, const OnStageEnd& on_stage_end) override {
+  std::vector<UpdateOutcome> Submit(const BatchView& batch,
+                                    const OnStageEnd& on_stage_end) override {
     std::this_thread::sleep_for(std::chrono::milliseconds(1100));
-    return agent_->Update(batch, on_stage_end);
+    return agent_->Submit(batch, on_stage_end);
   }
+  std::vector<UpdateOutcome> Finish() override { return agent_->Finish(); }
   uint64_t updates() const override { return agent_->updates(); }
   nn::TensorMap PolicyTensors() const override { return agent_->PolicyTensors(); }
   nn::TensorMap AveragedPolicyTensors() const override { return agent_->AveragedPolicyTensors(); }
@@ -55,7 +62,7 @@ class TrainingLoopTest : public testing::Test {
                           const std::function<void(PlayedBatches&)>& script = {}) {
     sink_.spec_hash = run_.spec.Hash();
     sink_.session = kTrainingSession;
-    std::unique_ptr<Agent> agent = MakeAgent(run_.config, run_.spec, precision_);
+    std::unique_ptr<Agent> agent = NewAgent();
     if (slow_) agent = std::make_unique<SlowAgent>(std::move(agent));
     CheckpointStore checkpoints(folder_.path(), run_);
     std::optional<CheckpointState> restored;
@@ -90,6 +97,15 @@ class TrainingLoopTest : public testing::Test {
     return end;
   }
 
+  // One whose engine has up to `delay_` updates in flight.
+  std::unique_ptr<Agent> NewAgent() {
+    if (delay_ == 0) return MakeAgent(run_.config, run_.spec, precision_);
+    return MakeReplicatedAgent(run_.config, precision_, /*replicas=*/1, [this](Engine* engine) {
+      return FindAlgorithm(run_.config.learner.algorithm)
+          .make(run_.config, run_.spec, &engines_.emplace_back(engine, delay_));
+    });
+  }
+
   void Say(RunState state) {
     control_.OnMessage({.epoch = ++epoch_, .state = state, .time = 0}, Now());
   }
@@ -108,6 +124,12 @@ class TrainingLoopTest : public testing::Test {
     return at == report.names.end() ? -1 : report.values[size_t(at - report.names.begin())];
   }
 
+  // Updates that the page counts, which it then forgets.
+  uint64_t TakeCounted() const {
+    const uint64_t counted = UpdatePage(folder_.path(), 0).lost();
+    std::filesystem::remove(folder_.path() / kUpdatePageFile);
+    return counted;
+  }
   std::set<std::string> Checkpoints() const {
     std::set<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(folder_.path() / "checkpoints")) {
@@ -128,6 +150,8 @@ class TrainingLoopTest : public testing::Test {
   uint64_t epoch_ = 0;
   uint64_t given_ = 0, updates_ = 0;
   bool slow_ = false;
+  size_t delay_ = 0;
+  std::deque<DeferringEngine> engines_;
   std::function<int(int threads)> resize_;
 };
 

@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
+#include <map>
+#include <tuple>
 
 #include "common/base/error.h"
 #include "common/base/files.h"
@@ -186,6 +189,91 @@ TEST_F(TrainingLoopTest, ANonFiniteUpdateEndsTheRunAndKeepsTheLastGoodCheckpoint
   }
   EXPECT_THAT(Checkpoints(), ElementsAre("step_000000004"));
   EXPECT_EQ(ReadCheckpoint(Checkpoint("step_000000004"), run_.spec.Hash()).state.updates, 4u);
+}
+
+// Weights, checkpoints and evaluation points wait for the updates in flight, and have their bytes.
+TEST_F(TrainingLoopTest, ARunWithUpdatesInFlightSendsAndWritesTheSameBytes) {
+  run_.config.learner.checkpoint_period = 3;
+  run_.config.eval.interval = 40;  // four updates
+  const auto train = [&](size_t delay) {
+    delay_ = delay;
+    Say(RunState::kRunning);
+    Train(11);
+    std::map<std::string, std::string> written;
+    for (const std::string& name : Checkpoints()) {
+      written[name] = ReadFile(Checkpoint(name) / "learner.safetensors");
+    }
+    fs::remove_all(folder_.path() / "checkpoints");
+    EXPECT_EQ(TakeCounted(), 11u);
+    EXPECT_EQ(Figure("updates"), 11);
+    return std::tuple(written, std::exchange(sink_.weights, {}),
+                      std::exchange(sink_.evaluations, {}));
+  };
+  const auto [written, weights, evaluations] = train(0);
+  const auto [late_written, late_weights, late_evaluations] = train(3);
+  EXPECT_GE(written.size(), 3u);
+  EXPECT_EQ(late_written, written);
+  const auto expect_same = [](const auto& sent, const auto& expected) {
+    ASSERT_EQ(sent.size(), expected.size());
+    ASSERT_FALSE(sent.empty());
+    for (size_t i = 0; i < sent.size(); ++i) {
+      EXPECT_EQ(sent[i].update, expected[i].update);
+      EXPECT_EQ(sent[i].env_steps, expected[i].env_steps);
+      EXPECT_TRUE(sent[i].payload == expected[i].payload) << sent[i].update;
+    }
+  };
+  expect_same(late_weights, weights);
+  expect_same(late_evaluations, evaluations);
+}
+
+// Update 7 is not finite, and the checkpoint, the weights or the evaluation point of update 8 are
+// due before its outcome is known otherwise.
+TEST_F(TrainingLoopTest, NothingLeavesBeforeTheOutcomesOfItsUpdatesAreKnown) {
+  const RunConfig plain = run_;
+  delay_ = 3;
+  const std::function<void()> dues[] = {
+      [this] { run_.config.learner.checkpoint_period = 4; },
+      [this] { run_.config.learner.weights_period = 8; },
+      [this] { run_.config.eval.interval = 80; },
+  };
+  for (const auto& due : dues) {
+    run_ = plain;
+    run_.config.learner.weights_period = 100;
+    due();
+    uint64_t asked = 0;
+    try {
+      Train(100, [&](PlayedBatches& batches) {
+        batches.poisoned_request = 7;
+        batches.before = [&](uint64_t request) { asked = request; };
+      });
+      FAIL() << "trained on not-a-number";
+    } catch (const Error& e) {
+      EXPECT_EQ(e.exit_code(), static_cast<int>(ErrorKind::kNonFinite));
+      EXPECT_THAT(e.what(), testing::HasSubstr("update 7 is not finite"));
+    }
+    EXPECT_EQ(asked, 8u) << "the next one was in flight";
+    EXPECT_FALSE(Checkpoints().contains("step_000000008"));
+    EXPECT_THAT(sink_.Updates(sink_.weights), ElementsAre(1));
+    EXPECT_THAT(sink_.evaluations, testing::IsEmpty());
+    EXPECT_EQ(TakeCounted(), 6u);
+    fs::remove_all(folder_.path() / "checkpoints");
+    sink_.weights.clear();
+  }
+}
+
+TEST_F(TrainingLoopTest, AnIdleLearnerReportsEveryUpdate) {
+  delay_ = 3;
+  uint64_t counted = 0;
+  Train(2, [&](PlayedBatches& batches) {
+    batches.last_request = 2;
+    int turns = 0;
+    batches.before = [&, turns](uint64_t) mutable {
+      if (++turns <= 4) return;  // two batches and two turns without one
+      counted = TakeCounted();
+      Say(RunState::kStopping);
+    };
+  });
+  EXPECT_EQ(counted, 2u);
 }
 
 TEST_F(TrainingLoopTest, DrainingEndsWithTheUpdatesThatTheStoredStepsGrant) {

@@ -30,7 +30,7 @@ size_t MemoryInUse() {
 // An actor of one tensor; nothing else of an agent is asked for.
 class LargeAgent final : public Agent {
  public:
-  UpdateOutcome Update(const BatchView&, const OnStageEnd&) override { return {}; }
+  std::vector<UpdateOutcome> Submit(const BatchView&, const OnStageEnd&) override { return {}; }
   uint64_t updates() const override { return 1; }
   nn::TensorMap PolicyTensors() const override {
     nn::NamedTensor tensor{"F32", {int64_t{kFloats}}, {}};

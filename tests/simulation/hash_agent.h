@@ -14,6 +14,7 @@
 #include <cstring>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "common/base/error.h"
 #include "common/base/random.h"
@@ -35,8 +36,8 @@ class HashAgent final : public learner::Agent {
   // The first action of the policy after this number of updates, without exploration.
   static double ActionAfter(uint64_t updates) { return static_cast<double>(updates) / 10'000; }
 
-  learner::UpdateOutcome Update(const BatchView& batch,
-                                const learner::OnStageEnd& on_stage_end) override {
+  std::vector<learner::UpdateOutcome> Submit(const BatchView& batch,
+                                             const learner::OnStageEnd& on_stage_end) override {
     CheckFollows(batch);
     const uint64_t before = HashBytes(batch.data, batch.schema->total_bytes());
     SleepFor(span_);
@@ -48,7 +49,7 @@ class HashAgent final : public learner::Agent {
     ++updates_;
     learner::UpdateOutcome outcome;
     outcome.figures.Set(learner::kCriticLoss, 1.0 + static_cast<double>(hash_ % 1000) * 1e-3);
-    return outcome;
+    return {outcome};
   }
 
   uint64_t updates() const override { return updates_; }

@@ -14,6 +14,7 @@
 #include "learner/agent/agent_state.h"
 #include "learner/agent/encoder_and_head.h"
 #include "learner/agent/figure_sheet.h"
+#include "learner/agent/pending_updates.h"
 #include "learner/agent/step_sizes.h"
 
 namespace shoal::learner {
@@ -73,7 +74,8 @@ class AveragedDdpgAgent final : public Agent {
     state_.Add(&updates_, "agent.updates");
   }
 
-  UpdateOutcome Update(const BatchView& drawn, const OnStageEnd& on_stage_end) override {
+  std::vector<UpdateOutcome> Submit(const BatchView& drawn,
+                                    const OnStageEnd& on_stage_end) override {
     const nn::ThreadScope scope(engine_->modules().threads);
     engine_->Begin(drawn);
     const Transitions batch = engine_->Take(drawn);
@@ -88,11 +90,11 @@ class AveragedDdpgAgent final : public Agent {
     engine_->MoveTowards(
         float(learner_.tau),
         std::array<nn::Following, 2>{{{&critic_, &target_critic_}, {&actor_, &target_actor_}}});
-    const Engine::Outcome outcome = engine_->End();  // an update is whole or not at all
-    if (outcome.finite) ++updates_;
+    std::vector<UpdateOutcome> outcomes = pending_.End();  // an update is whole or not at all
     on_stage_end(UpdateStage::kOptimiser);
-    return {.figures = figures_.Take(*engine_, outcome), .finite = outcome.finite};
+    return outcomes;
   }
+  std::vector<UpdateOutcome> Finish() override { return pending_.Finish(); }
 
   uint64_t updates() const override { return updates_; }
   nn::TensorMap PolicyTensors() const override {
@@ -207,6 +209,7 @@ class AveragedDdpgAgent final : public Agent {
   const CriticNumbers critic_numbers_;
   const Number spread_, critic_squares_, actor_loss_, actor_squares_, saturation_;
   FigureSheet figures_;
+  PendingUpdates pending_{engine_, &figures_, &updates_};
 };
 
 }  // namespace

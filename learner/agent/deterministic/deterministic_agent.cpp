@@ -14,6 +14,7 @@
 #include "learner/agent/agent_state.h"
 #include "learner/agent/encoder_and_head.h"
 #include "learner/agent/figure_sheet.h"
+#include "learner/agent/pending_updates.h"
 #include "learner/agent/policy_average.h"
 #include "learner/agent/sample_figures.h"
 #include "learner/agent/step_sizes.h"
@@ -34,7 +35,9 @@ class DeterministicAgent final : public Agent {
   DeterministicAgent(const Config& config, const ObservationSpec& spec,
                      const DeterministicOptions& options, Engine* engine);
 
-  UpdateOutcome Update(const BatchView& drawn, const OnStageEnd& on_stage_end) override;
+  std::vector<UpdateOutcome> Submit(const BatchView& drawn,
+                                    const OnStageEnd& on_stage_end) override;
+  std::vector<UpdateOutcome> Finish() override { return pending_.Finish(); }
   uint64_t updates() const override { return updates_; }
   nn::TensorMap PolicyTensors() const override;
   nn::TensorMap AveragedPolicyTensors() const override;
@@ -80,6 +83,7 @@ class DeterministicAgent final : public Agent {
   const Number critic_squares_, actor_squares_;  // of gradients
   const Number actor_loss_, saturation_;
   FigureSheet figures_;
+  PendingUpdates pending_{engine_, &figures_, &updates_};
 };
 
 // Values of all Q functions.
@@ -215,7 +219,8 @@ void DeterministicAgent::MoveTargetsAndAverage() {
   average_.Move(float(config_.learner.average_rate));
 }
 
-UpdateOutcome DeterministicAgent::Update(const BatchView& drawn, const OnStageEnd& on_stage_end) {
+std::vector<UpdateOutcome> DeterministicAgent::Submit(const BatchView& drawn,
+                                                      const OnStageEnd& on_stage_end) {
   const nn::ThreadScope scope(engine_->modules().threads);
   const double rate_factor = config_.learner.rate_factor.At(drawn.stored_steps);
   engine_->Set(rate_factor_, rate_factor);
@@ -231,10 +236,9 @@ UpdateOutcome DeterministicAgent::Update(const BatchView& drawn, const OnStageEn
   MoveTargetsAndAverage();
   figures_.SetValue(kLearningRate, CriticStep(config_.learner).rate * rate_factor);
   standard_.Add(drawn);
-  const Engine::Outcome outcome = engine_->End();
-  if (outcome.finite) ++updates_;
+  std::vector<UpdateOutcome> outcomes = pending_.End();
   on_stage_end(UpdateStage::kOptimiser);
-  return {.figures = figures_.Take(*engine_, outcome), .finite = outcome.finite};
+  return outcomes;
 }
 
 nn::TensorMap DeterministicAgent::PolicyTensors() const {

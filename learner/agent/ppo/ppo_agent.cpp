@@ -34,7 +34,10 @@ class PpoAgent final : public Agent {
  public:
   PpoAgent(const Config& config, const ObservationSpec& spec, Engine* engine, RowOrder order);
 
-  UpdateOutcome Update(const BatchView& batch, const OnStageEnd& on_stage_end) override;
+  std::vector<UpdateOutcome> Submit(const BatchView& batch,
+                                    const OnStageEnd& on_stage_end) override {
+    return {LearnFromRollout(batch, on_stage_end)};
+  }
   uint64_t updates() const override { return updates_; }
   nn::TensorMap PolicyTensors() const override;
   nn::TensorMap AveragedPolicyTensors() const override { return PolicyTensors(); }
@@ -62,6 +65,7 @@ class PpoAgent final : public Agent {
   // Runs the operations of that update, then ends the update.
   Engine::Outcome LearnFrom(const Transitions& rows, const OnStageEnd& on_stage_end);
   void AddTo(Sums* sums, const Engine::Outcome& outcome) const;
+  UpdateOutcome LearnFromRollout(const BatchView& batch, const OnStageEnd& on_stage_end);
   // Returns false if a number is not finite.
   bool Epochs(const BatchView& batch, const Prepared& prepared, const OnStageEnd& on_stage_end,
               Sums* sums);
@@ -224,7 +228,7 @@ Engine::Outcome PpoAgent::LearnFrom(const Transitions& rows, const OnStageEnd& o
   on_stage_end(UpdateStage::kBackward);
   engine_->Step(&optimiser_, networks_.Modules(), NextUse::kNextUpdate);
   engine_->GaussianFigures(*networks_.log_std(), deviation_, entropy_);
-  const Engine::Outcome outcome = engine_->End();
+  const Engine::Outcome outcome = engine_->EndAndWait();
   on_stage_end(UpdateStage::kOptimiser);
   return outcome;
 }
@@ -280,7 +284,7 @@ void PpoAgent::SetFigures(const BatchView& batch, const Prepared& prepared, cons
   figures->Set(kExplainedVariance, ExplainedVariance(prepared.value, prepared.target));
 }
 
-UpdateOutcome PpoAgent::Update(const BatchView& batch, const OnStageEnd& on_stage_end) {
+UpdateOutcome PpoAgent::LearnFromRollout(const BatchView& batch, const OnStageEnd& on_stage_end) {
   CHECK(int(batch.reward.size()) >= batch_size_) << "rollout of " << batch.reward.size();
   const nn::ThreadScope scope(engine_->modules().threads);
   UpdateOutcome outcome{.figures = {}, .finite = AllFinite(batch)};

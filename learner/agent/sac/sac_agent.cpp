@@ -23,6 +23,7 @@
 #include "learner/agent/sac/sac_agent.h"
 
 #include <array>
+#include <vector>
 
 #include "common/base/random.h"
 #include "common/config/privileged_blocks.h"
@@ -30,6 +31,7 @@
 #include "learner/agent/agent_state.h"
 #include "learner/agent/critic_vectors.h"
 #include "learner/agent/figure_sheet.h"
+#include "learner/agent/pending_updates.h"
 #include "learner/agent/sac/sac_networks.h"
 #include "learner/agent/sample_figures.h"
 #include "learner/agent/step_sizes.h"
@@ -49,7 +51,9 @@ class SacAgent final : public Agent {
  public:
   SacAgent(const Config& config, const ObservationSpec& spec, Engine* engine);
 
-  UpdateOutcome Update(const BatchView& drawn, const OnStageEnd& on_stage_end) override;
+  std::vector<UpdateOutcome> Submit(const BatchView& drawn,
+                                    const OnStageEnd& on_stage_end) override;
+  std::vector<UpdateOutcome> Finish() override { return pending_.Finish(); }
   uint64_t updates() const override { return updates_; }
   nn::TensorMap PolicyTensors() const override { return Policy(networks_.PolicyTensors()); }
   nn::TensorMap AveragedPolicyTensors() const override {
@@ -97,6 +101,7 @@ class SacAgent final : public Agent {
   const Number critic_squares_, actor_squares_;  // of gradients
   const Number actor_loss_, entropy_, saturation_, temperature_loss_;
   FigureSheet figures_;
+  PendingUpdates pending_{engine_, &figures_, &updates_};
 };
 
 SacAgent::SacAgent(const Config& config, const ObservationSpec& spec, Engine* engine)
@@ -195,7 +200,8 @@ void SacAgent::UpdateActor(const Seen& seen, Random* random, const OnStageEnd& o
   on_stage_end(UpdateStage::kOptimiser);
 }
 
-UpdateOutcome SacAgent::Update(const BatchView& drawn, const OnStageEnd& on_stage_end) {
+std::vector<UpdateOutcome> SacAgent::Submit(const BatchView& drawn,
+                                            const OnStageEnd& on_stage_end) {
   const nn::ThreadScope scope(engine_->modules().threads);
   const double rate_factor = config_.learner.rate_factor.At(drawn.stored_steps);
   engine_->Set(rate_factor_, rate_factor);
@@ -215,10 +221,9 @@ UpdateOutcome SacAgent::Update(const BatchView& drawn, const OnStageEnd& on_stag
   figures_.Set(kTemperature, next_temperature_);
   figures_.SetValue(kLearningRate, CriticStep(config_.learner).rate * rate_factor);
   standard_.Add(drawn);
-  const Engine::Outcome outcome = engine_->End();
-  if (outcome.finite) ++updates_;
+  std::vector<UpdateOutcome> outcomes = pending_.End();
   on_stage_end(UpdateStage::kOptimiser);
-  return {.figures = figures_.Take(*engine_, outcome), .finite = outcome.finite};
+  return outcomes;
 }
 
 void SacAgent::Restore(const nn::TensorMap& tensors, const std::string& source) {

@@ -6,8 +6,10 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <set>
 #include <thread>
 #include <vector>
@@ -16,6 +18,7 @@
 #include "common/nn/parallel.h"
 #include "learner/agent/sac/sac_agent.h"
 #include "tests/learner/agent/agent_fixture.h"
+#include "tests/learner/engine/deferring_engine.h"
 
 namespace shoal::learner {
 namespace {
@@ -154,16 +157,17 @@ const Case kCases[] = {
 INSTANTIATE_TEST_SUITE_P(Of, ReplicatedAgentTest, testing::ValuesIn(kCases),
                          [](const auto& test) { return test.param.name; });
 
-// Replicas with access to each.
+// Replicas with access to each, whose engines have up to `delay` updates in flight.
 class Replicas {
  public:
-  explicit Replicas(int count, const Config& config = SmallConfig())
+  explicit Replicas(int count, const Config& config = SmallConfig(), size_t delay = 0)
       : whole(MakeReplicatedAgent(config, Precision::kF32, count, [&](Engine* engine) {
-          auto agent = MakeSacAgent(config, SmallSpec(), engine);
+          auto agent = MakeSacAgent(config, SmallSpec(), &engines.emplace_back(engine, delay));
           each.push_back(agent.get());
           return agent;
         })) {}
 
+  std::deque<DeferringEngine> engines;
   std::vector<Agent*> each;
   const std::unique_ptr<Agent> whole;
 };
@@ -184,9 +188,9 @@ TEST(ReplicatedAgent, ReplicasStayEqualBitForBit) {
 
 // An agent that records which threads make and run it.
 struct ThreadRecorder final : Agent {
-  UpdateOutcome Update(const BatchView&, const OnStageEnd&) override {
+  std::vector<UpdateOutcome> Submit(const BatchView&, const OnStageEnd&) override {
     ran = std::this_thread::get_id();
-    return {};
+    return {UpdateOutcome()};
   }
   uint64_t updates() const override { return 0; }
   TensorMap PolicyTensors() const override { return {}; }
@@ -246,6 +250,43 @@ TEST(ReplicatedAgent, NonFiniteActorLossTakesTheCriticsStepBackInAll) {
     EXPECT_THAT(Differences(agent->AllTensors(), before), IsEmpty());
   }
   EXPECT_THAT(Differences(replicas.whole->AllTensors(), before), IsEmpty());
+}
+
+TEST(ReplicatedAgent, ReplicasWithUpdatesInFlightAgree) {
+  const Replicas waiting(2), deferring(2, SmallConfig(), /*delay=*/2);
+  std::vector<bool> finite;
+  const auto keep = [&](const std::vector<UpdateOutcome>& outcomes) {
+    for (const UpdateOutcome& outcome : outcomes) finite.push_back(outcome.finite);
+  };
+  for (uint64_t u = 0; u < 6; ++u) {
+    const RandomBatch batch(SmallSpec(), SmallConfig().learner.batch, u);
+    if (u == 4) batch.View().reward[5] = 1e25f;  // of the second
+    keep(deferring.whole->Submit(batch.View(), [](UpdateStage) {}));
+    if (u < 5) waiting.whole->Update(batch.View());
+  }
+  EXPECT_THAT(finite, testing::ElementsAre(true, true, true, true));
+  keep(deferring.whole->Finish());
+  EXPECT_THAT(finite, testing::ElementsAre(true, true, true, true, false));
+  EXPECT_EQ(deferring.whole->updates(), 4u);
+  for (const Agent* agent : deferring.each) {
+    EXPECT_THAT(Differences(agent->AllTensors(), waiting.whole->AllTensors()), IsEmpty());
+  }
+  const RandomBatch next(SmallSpec(), SmallConfig().learner.batch, 6);
+  EXPECT_EQ(Get(deferring.whole->Update(next.View()), kCriticLoss),
+            Get(waiting.whole->Update(next.View()), kCriticLoss));
+}
+
+TEST(ReplicatedAgent, NothingLeavesItWhileUpdatesAreInFlight) {
+  const Replicas replicas(1, SmallConfig(), /*delay=*/2);
+  const RandomBatch batch(SmallSpec(), SmallConfig().learner.batch, 4);
+  const TensorMap before = replicas.whole->AllTensors();
+  replicas.whole->Submit(batch.View(), [](UpdateStage) {});
+  EXPECT_DEATH((void)replicas.whole->AllTensors(), "1 updates are in flight");
+  EXPECT_DEATH((void)replicas.whole->PolicyTensors(), "in flight");
+  EXPECT_DEATH((void)replicas.whole->AveragedPolicyTensors(), "in flight");
+  EXPECT_DEATH(replicas.whole->Restore(before, "test"), "in flight");
+  replicas.whole->Finish();
+  EXPECT_THAT(Differences(replicas.whole->AllTensors(), before), Not(IsEmpty()));
 }
 
 TEST(ReplicatedAgent, ACheckpointIsOfNoNumberOfReplicas) {

@@ -241,7 +241,7 @@ TEST_F(CpuEngineTest, ATemperatureStepsByItsLossAndStaysAboveItsBound) {
   engine_.TemperatureLoss(temperature, Holding(-5), -3, loss);
   engine_.StepTemperature(loss, 1e-3, &log_temperature, &adam);
   engine_.Temperature(log_temperature, temperature);
-  EXPECT_TRUE(engine_.End().finite);
+  EXPECT_TRUE(engine_.EndAndWait().finite);
   EXPECT_NEAR(engine_.Read(loss), 0.2 * (-5 + 3), kTolerance);
   EXPECT_NEAR(engine_.Read(temperature), 0.2 * std::exp(0.5),
               1e-5);  // entropy is too low: it rises
@@ -273,7 +273,7 @@ class FlagTest : public CpuEngineTest {
 TEST_F(FlagTest, AStepHasItsEffectWhileAllIsFinite) {
   engine_.Begin(data_.View());
   Step();
-  EXPECT_TRUE(engine_.End().finite);
+  EXPECT_TRUE(engine_.EndAndWait().finite);
   EXPECT_EQ(engine_.Read(squares_), 12);
   EXPECT_NE(Weights(), before_);
   EXPECT_EQ(adam_.steps(), 1u);
@@ -288,7 +288,7 @@ TEST_F(FlagTest, ABatchThatIsNotFiniteMovesNothing) {
     ParameterSet average({{"w", {3}}}, ParameterSet::Use::kInference);
     engine_.MoveAverage(0.5f, set_, &average);
     EXPECT_EQ(average.values()[0], 0);
-    const Engine::Outcome outcome = engine_.End();
+    const Engine::Outcome outcome = engine_.EndAndWait();
     EXPECT_FALSE(outcome.finite);
     EXPECT_FALSE(outcome.batch_finite);
     EXPECT_EQ(Weights(), before_);
@@ -301,7 +301,7 @@ TEST_F(FlagTest, WhatIsNotFiniteAfterAStepTakesItBack) {
   Step();
   EXPECT_NE(Weights(), before_);
   engine_.RequireFinite(Holding(INFINITY));
-  const Engine::Outcome outcome = engine_.End();
+  const Engine::Outcome outcome = engine_.EndAndWait();
   EXPECT_FALSE(outcome.finite);
   EXPECT_TRUE(outcome.batch_finite);
   EXPECT_EQ(Weights(), before_);
@@ -312,7 +312,7 @@ TEST_F(FlagTest, GradientsBeyondTheMomentsRangeMoveNothing) {
   set_.gradients()[1] = 1e25f;  // finite, but its square is not in f32
   engine_.Begin(data_.View());
   Step();
-  EXPECT_FALSE(engine_.End().finite);
+  EXPECT_FALSE(engine_.EndAndWait().finite);
   EXPECT_EQ(Weights(), before_);
 }
 
@@ -320,10 +320,10 @@ TEST_F(FlagTest, IsUpAgainInTheNextUpdate) {
   engine_.Begin(data_.View());
   engine_.RequireFinite(Holding(NAN));
   Step();
-  EXPECT_FALSE(engine_.End().finite);
+  EXPECT_FALSE(engine_.EndAndWait().finite);
   engine_.Begin(data_.View());
   Step();
-  EXPECT_TRUE(engine_.End().finite);
+  EXPECT_TRUE(engine_.EndAndWait().finite);
   EXPECT_NE(Weights(), before_);
 }
 
@@ -336,7 +336,7 @@ TEST_F(FlagTest, HeldStepsMoveNothingAndTheFlagStaysUp) {
   engine_.RequireFinite(Holding(NAN));
   Step();
   engine_.MoveAverage(0.5f, set_, &average);
-  const Engine::Outcome outcome = engine_.End();
+  const Engine::Outcome outcome = engine_.EndAndWait();
   EXPECT_TRUE(outcome.finite);
   EXPECT_TRUE(outcome.held);
   EXPECT_EQ(Weights(), before_);
@@ -345,7 +345,7 @@ TEST_F(FlagTest, HeldStepsMoveNothingAndTheFlagStaysUp) {
   engine_.Begin(data_.View());
   engine_.HoldSteps(Holding(1.5), 1.5);
   Step();
-  EXPECT_FALSE(engine_.End().held);
+  EXPECT_FALSE(engine_.EndAndWait().held);
   EXPECT_NE(Weights(), before_);
 }
 

@@ -11,7 +11,7 @@
 
 namespace shoal::learner {
 
-class RecordingEngine final : public Engine {
+class RecordingEngine : public Engine {
  public:
   // Borrows the engine.
   explicit RecordingEngine(Engine* engine) : engine_(engine) {}
@@ -28,7 +28,8 @@ class RecordingEngine final : public Engine {
 
   void Begin(const BatchView& drawn) override;
   Transitions Take(const BatchView& batch) override;
-  Outcome End() override;
+  std::optional<Outcome> End() override;
+  Outcome WaitOutcome() override { return engine_->WaitOutcome(); }
   double Read(Number number) const override { return engine_->Read(number); }
   std::vector<float> ReadRows(Array array) const override { return engine_->ReadRows(array); }
   std::vector<double> ReadMoments(Moments moments) const override {
