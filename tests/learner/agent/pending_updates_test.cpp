@@ -22,12 +22,12 @@ using testing::SizeIs;
 
 constexpr size_t kDelay = 3;
 
-struct Case {
+struct DeferringCase {
   std::string name;
   std::function<void(Config*)> set;
 };
 
-void PrintTo(const Case& each, std::ostream* out) { *out << each.name; }
+void PrintTo(const DeferringCase& each, std::ostream* out) { *out << each.name; }
 
 void ExpectSame(const UpdateOutcome& outcome, const UpdateOutcome& expected) {
   EXPECT_EQ(outcome.finite, expected.finite);
@@ -39,7 +39,7 @@ void ExpectSame(const UpdateOutcome& outcome, const UpdateOutcome& expected) {
   }
 }
 
-class PendingUpdatesTest : public testing::TestWithParam<Case> {
+class PendingUpdatesTest : public testing::TestWithParam<DeferringCase> {
  protected:
   PendingUpdatesTest() {
     config_.learner.normalise_vectors = true;
@@ -75,8 +75,8 @@ class PendingUpdatesTest : public testing::TestWithParam<Case> {
 };
 
 TEST_P(PendingUpdatesTest, OutcomesFollowInOrderAndTheAgentIsTheSame) {
-  constexpr size_t kUpdates = 8;
-  for (size_t u = 0; u < kUpdates; ++u) {
+  constexpr size_t kSubmitted = 8;
+  for (size_t u = 0; u < kSubmitted; ++u) {
     Submit(u);
     EXPECT_EQ(deferring_->updates(), u + 1) << "an update in flight counts";
     EXPECT_THAT(outcomes_, SizeIs(u < kDelay ? 0 : u + 1 - kDelay));
@@ -84,8 +84,8 @@ TEST_P(PendingUpdatesTest, OutcomesFollowInOrderAndTheAgentIsTheSame) {
   EXPECT_EQ(deferred_.in_flight(), kDelay);
   Keep(deferring_->Finish());
   EXPECT_THAT(deferring_->Finish(), IsEmpty());
-  ASSERT_THAT(outcomes_, SizeIs(kUpdates));
-  for (size_t u = 0; u < kUpdates; ++u) ExpectSame(outcomes_[u], expected_[u]);
+  ASSERT_THAT(outcomes_, SizeIs(kSubmitted));
+  for (size_t u = 0; u < kSubmitted; ++u) ExpectSame(outcomes_[u], expected_[u]);
   EXPECT_NE(Get(outcomes_[0], kCriticLoss), Get(outcomes_[1], kCriticLoss));
   ExpectSameAgents();
 }
@@ -120,7 +120,7 @@ TEST_P(PendingUpdatesTest, AnUpdateThatIsNotFiniteLeavesNothingOfThoseBehindIt) 
   ExpectSameAgents();
 }
 
-const Case kCases[] = {
+const DeferringCase kDeferringCases[] = {
     {"sac", [](Config* config) { config->learner.actor_period = 2; }},
     {"sac_separate",
      [](Config* config) {
@@ -131,7 +131,7 @@ const Case kCases[] = {
     {"ddpg", [](Config* config) { config->learner.algorithm = "ddpg"; }},
 };
 
-INSTANTIATE_TEST_SUITE_P(Of, PendingUpdatesTest, testing::ValuesIn(kCases),
+INSTANTIATE_TEST_SUITE_P(Of, PendingUpdatesTest, testing::ValuesIn(kDeferringCases),
                          [](const auto& test) { return test.param.name; });
 
 // An update of a rollout looks at numbers between its minibatches, so it waits for each.
