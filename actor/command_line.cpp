@@ -14,9 +14,8 @@ void AddOptions(CLI::App& app, Options* options) {
   app.add_option("--id", options->id, "number of this actor within the run");
   app.add_option("--role", options->role, "train or eval")->check(CLI::IsMember({"train", "eval"}));
   dds::AddEndpointOptions(&app, &options->endpoint);
-  app.add_flag(
-      "--stop-with-input", options->stop_with_input,
-      "stop when standard input ends: a remote shell's way to say that its caller is gone");
+  app.add_flag("--stop-with-input", options->stop_with_input,
+               "stop when standard input ends, which a remote shell closes when its caller ends");
   auto* describe = app.add_flag("--describe", options->describe, "print the observation spec");
   app.add_option("--config-json", options->config_json, "configuration for --describe")
       ->needs(describe);
@@ -28,18 +27,18 @@ void AddOptions(CLI::App& app, Options* options) {
       ->check(CLI::PositiveNumber);
   app.add_option("--seed", options->evaluation.seed, "seed of --evaluate");
   app.add_flag("--partial", options->evaluation.partial,
-               "asked to stop, write the result of the episodes that were played by then")
+               "on a stop signal, write the result of the episodes played so far")
       ->needs(evaluate);
   auto* frames = app.add_option("--frames", options->frames.file,
-                                "file or pipe for what --evaluate shows, step by step")
+                                "file or pipe for the frames of --evaluate, step by step")
                      ->needs(evaluate);
   app.add_option("--view", options->frames.camera,
                  "camera of the larger view among --frames; default: the run's first")
       ->needs(frames);
-  app.add_option("--view-height", options->frames.height, "its height in pixels")
+  app.add_option("--view-height", options->frames.height, "height of the larger view in pixels")
       ->needs(frames)
       ->check(CLI::Range(16, 2160));
-  app.add_option("--view-width", options->frames.width, "its width in pixels")
+  app.add_option("--view-width", options->frames.width, "width of the larger view in pixels")
       ->needs(frames)
       ->check(CLI::Range(16, 3840));
   app.add_option("--view-quality", options->frames.quality,
@@ -50,7 +49,7 @@ void AddOptions(CLI::App& app, Options* options) {
   app.add_option("--json", options->json,
                  "file for the result of --evaluate or --describe, in place of standard output");
   app.add_option("--progress", options->progress,
-                 "file that says after each episode of --evaluate how many have been played")
+                 "file for the number of episodes played, written after each episode of --evaluate")
       ->needs(evaluate);
 }
 

@@ -43,14 +43,14 @@ std::string CheckPrecision(const Checkpoint& checkpoint, const std::string& aske
   if (before == now) return "";
   if (asked == "auto") {
     throw UsageError(
-        "{} was computed in {}, here it is {} (learner.precision = auto, CPU {}): go on with "
-        "--set learner.precision={} for the same arithmetic where the CPU has it, or accept the "
-        "other with --set learner.precision={}",
+        "{} was computed in {}, this CPU would use {} (learner.precision = auto, CPU {}): continue "
+        "with --set learner.precision={} if the CPU supports it, or accept the other arithmetic "
+        "with --set learner.precision={}",
         name, before, now, nn::CpuIsa(), before, now);
   }
   return fmt::format(
-      "{} was computed in {}, from here on it is {} (learner.precision = {}): the run "
-      "does not go on exactly as it was",
+      "{} was computed in {}, its continuation uses {} (learner.precision = {}): the run does not "
+      "continue exactly as before",
       name, before, now, asked);
 }
 

@@ -44,7 +44,7 @@ std::optional<Checkpoint> CheckpointStore::RestoreNewest() {
     try {
       Checkpoint checkpoint = ReadCheckpoint(folder_ / name, run_.spec.Hash());
       if (checkpoint.state.config_hash != config_hash_) {
-        log::Warning("{} was written with another configuration: going on with the present one",
+        log::Warning("{} was written with another configuration: continuing with the present one",
                      name);
       }
       // Sets refused checkpoints aside, so that the next start does not try them again.
@@ -63,7 +63,7 @@ std::optional<Checkpoint> CheckpointStore::RestoreNewest() {
   if (refused.empty()) return std::nullopt;
   throw UsageError(
       "none of {} checkpoint(s) can be used; the newest: {}; restore one, or move '{}' away to "
-      "learn anew with the replay that is there",
+      "train from scratch with the existing replay",
       refused.size(), newest_fault, folder_.string());
 }
 

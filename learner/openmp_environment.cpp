@@ -25,7 +25,7 @@ void EnsurePassiveOpenMp(int threads, char** argv) {
   setenv("OMP_WAIT_POLICY", "passive", 1);
   setenv("OMP_NUM_THREADS", std::to_string(threads).c_str(), 1);
   execv(ProgramFile().c_str(), argv);
-  throw RuntimeError("cannot start '{}' anew: {}", argv[0], std::strerror(errno));
+  throw RuntimeError("cannot start '{}' again: {}", argv[0], std::strerror(errno));
 }
 
 }  // namespace shoal::learner

@@ -95,8 +95,8 @@ void EvalActor::WarnOfOvertaken() {
   const uint64_t overtaken = weights_.overtaken();
   if (overtaken == overtaken_said_) return;
   log::Warning(
-      "{} evaluation(s) left out, {} in all: newer parameters came first; an evaluation takes "
-      "longer than eval.interval",
+      "{} evaluation(s) skipped, {} in all: newer weights arrived first, because an evaluation "
+      "takes longer than eval.interval",
       overtaken - overtaken_said_, overtaken);
   overtaken_said_ = overtaken;
 }

@@ -74,7 +74,7 @@ uint32_t StepMicroseconds(worlds::Environment& environment, worlds::ObservationO
 
 // The view repeats the policy's episode, so a fault of the view alone means that the two differ.
 [[noreturn]] void ThrowParted(const worlds::EpisodeFault& fault) {
-  throw RuntimeError("the view's environment went another way than the policy's: {}", fault.what());
+  throw RuntimeError("the view's environment diverged from the policy's: {}", fault.what());
 }
 
 // Converts (3, H, W) to (H, W, 3).

@@ -89,7 +89,7 @@ bool ActorLoop::Drain(const Progress& progress) {
     return true;
   }
   const std::chrono::duration<double> waited = parts_.now() - start;
-  log::Failure("stopped with {} of {} records not reported stored within {:.1f} s",
+  log::Failure("stopped: {} of {} records were not acknowledged within {:.1f} s",
                window.Outstanding(), window.stored() + window.Outstanding(), waited.count());
   return false;
 }

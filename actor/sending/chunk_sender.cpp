@@ -8,8 +8,9 @@
 namespace shoal::actor {
 
 SupersededError::SupersededError(uint32_t actor, uint64_t session)
-    : Error(RuntimeError("another process is actor {} with the later session {}: two of a number?",
-                         actor, session)),
+    : Error(RuntimeError(
+          "another process is actor {} with the later session {}: was this number started twice?",
+          actor, session)),
       session_(session) {}
 
 ChunkSender::ChunkSender(ChunkWindow& window, ChunkLink& link, const Options& options)

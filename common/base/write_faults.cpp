@@ -12,7 +12,7 @@ bool WriteFaults::Try(const std::string& what, const std::function<void()>& writ
     write();
   } catch (const Error& e) {
     if (failing_.insert(what).second) {
-      say_(fmt::format("{}: {}; kept, and tried again", what, e.what()));
+      say_(fmt::format("{}: {}; the data is kept and the write is retried", what, e.what()));
     }
     return false;
   }

@@ -26,13 +26,14 @@ std::vector<Key> RunKeys() {
       SHOAL_KEY(run_dir, AnyValue{}, "folder that holds the runs"),
       SHOAL_KEY(task, FileName{}, "task to learn"),
       SHOAL_KEY(task_library, AnyValue{},
-                "path of a shared object with tasks of one's own; empty = none"),
+                "path of a shared object that defines further tasks; empty = none"),
       SHOAL_KEY(distance_threshold, (RealRange{0, 1000}),
                 "distance in m below which a goal is reached; 0 = the task's own"),
       SHOAL_KEY(env_steps, kSteps, "budget: training stops after this many env steps"),
-      SHOAL_KEY(actors, (IntegerRange{0, kMostActors}),
-                "actor processes; 0 = as the run divides its cores (learner.threads), else one per "
-                "core the learner leaves, at least 1; in lockstep 1"),
+      SHOAL_KEY(
+          actors, (IntegerRange{0, kMostActors}),
+          "actor processes; 0 = chosen by the run: with learner.threads if the run divides its "
+          "cores, else one for each core that the learner leaves, at least 1; in lockstep 1"),
       SHOAL_KEY(envs_per_actor, (IntegerRange{1, 256}), "environments stepped by one actor"),
       SHOAL_KEY(lockstep, AnyValue{},
                 "one actor, fixed batches, weights at fixed steps: repeats bit for bit"),
@@ -40,71 +41,72 @@ std::vector<Key> RunKeys() {
                 "vector steps between two weights versions in lockstep"),
       SHOAL_KEY(model, AnyValue{}, "path of another MJCF file for the task; empty = the built-in"),
       SHOAL_KEY(physics, (Choices{{"mujoco2", "mujoco3"}}),
-                "Fetch: how stiffly the arm's orientation is held, as in this version of MuJoCo"),
+                "Fetch: stiffness of the constraint that holds the arm's orientation, as in this "
+                "version of MuJoCo"),
       SHOAL_KEY(action_repeat, (IntegerRange{0, 100}),
-                "control steps for which an env step repeats its action, rewards added up; 0 = the "
-                "task's own"),
-      SHOAL_KEY(
-          end_on_success, AnyValue{},
-          "tasks with goals: an episode ends with the step that reaches its goal, and nothing "
-          "is expected after it; in training and evaluation"),
-      SHOAL_KEY(
-          max_faulty_share, (RealRange{0, 1}),
-          "share of an actor's last 200 episodes that may be faulty, which end, truncated, where a "
-          "number of the simulation is not finite; beyond it the run ends; 0 = the first one ends "
-          "it"),
+                "control steps for which an env step repeats its action and sums the rewards; 0 = "
+                "the task's own number"),
+      SHOAL_KEY(end_on_success, AnyValue{},
+                "tasks with goals: the step that reaches the goal terminates the episode, in "
+                "training and evaluation; its target does not bootstrap"),
+      SHOAL_KEY(max_faulty_share, (RealRange{0, 1}),
+                "largest share of faulty episodes (truncated because a number of the simulation is "
+                "not finite) among an actor's last 200; a larger share ends the run; 0 = the first "
+                "faulty episode ends it"),
   };
 }
 
 std::vector<Key> EnvKeys() {
   return {
       SHOAL_KEY(env.id, AnyValue{},
-                "environment written in Python, in place of a task: a name that gymnasium.make "
+                "environment written in Python, used instead of a task: a name that gymnasium.make "
                 "knows, MODULE:NAME or FILE.py:NAME (docs/own_environment.md); empty = none"),
       SHOAL_KEY(env.kwargs, AnyValue{}, "arguments of the environment's constructor"),
       SHOAL_KEY(env.python, AnyValue{},
                 "path of the Python interpreter that runs the environment; empty = that of the "
                 "active virtual environment, else python3"),
       SHOAL_KEY(env.folder, AnyValue{},
-                "folder in which MODULE is looked for besides the interpreter's own places; empty "
-                "= where the run is started"),
+                "folder where the interpreter also searches for MODULE; empty = the folder where "
+                "the run is started"),
       SHOAL_KEY(env.step_timeout, (RealRange{0, 3600, true}),
-                "seconds after which a call of reset, step or render that has not returned ends "
-                "its actor, which is then restarted"),
+                "longest time in seconds of a call of reset, step or render; after it the actor "
+                "ends and is restarted"),
   };
 }
 
 std::vector<Key> ObservationKeys() {
   return {
       SHOAL_KEY(observation.pixels, AnyValue{}, "render cameras"),
-      SHOAL_KEY(observation.cameras, AnyValue{},
-                "cameras, in channel order, of the task, of its model or of "
-                "observation.custom_cameras; a task that lacks one of the default two is seen "
-                "through its first camera instead"),
+      SHOAL_KEY(
+          observation.cameras, AnyValue{},
+          "cameras of the task, of its model or of observation.custom_cameras, in channel order; a "
+          "task that lacks one of the two default cameras uses its first camera instead"),
       SHOAL_KEY(observation.grey, AnyValue{}, "one grey channel per camera instead of RGB"),
       SHOAL_KEY(observation.height, (IntegerRange{8, 1024}), "image height in pixels"),
       SHOAL_KEY(observation.width, (IntegerRange{8, 1024}), "image width in pixels"),
       SHOAL_KEY(observation.stack, (IntegerRange{1, 16}), "frames per observation"),
       SHOAL_KEY(observation.goal_mode, (Choices{{"none", "desired", "both", "image"}}),
-                "the goal among the observations: as vectors (both = desired and achieved), or "
-                "image = a picture of the goal reached beside the frames"),
+                "how the policy observes the goal: desired = as a vector; both = as the vectors of "
+                "desired and achieved goal; image = as a picture of the goal reached, after the "
+                "frames; none = not at all"),
       SHOAL_KEY(observation.proprioception, AnyValue{},
-                "the task's state vector: all of it, nothing, or the blocks named (shoal env "
-                "describe lists them)"),
+                "blocks of the task's state vector that the policy observes: true = all, false = "
+                "none, or a list of names (shoal env describe lists them)"),
       SHOAL_KEY(observation.quality, (Choices{{"fast", "native", "reference"}}),
                 "fast = no shadows, reflections, multisampling; native = as fast, drawn by a "
                 "renderer without OpenGL; reference = the rendering of the originals"),
-      SHOAL_KEY(
-          observation.custom_cameras, AnyValue{},
-          "cameras of one's own for observation.cameras; in m and degrees, azimuth 0 looks "
-          "along +x, negative elevation down; with `body` in that body's frame, moving with it"),
+      SHOAL_KEY(observation.custom_cameras, AnyValue{},
+                "further cameras for observation.cameras; in m and degrees, azimuth 0 looks along "
+                "+x, negative elevation looks down; with `body`, the camera moves with that body, "
+                "in its frame"),
   };
 }
 
 std::vector<Key> RandomizationKeys() {
   return {
       SHOAL_KEY(randomization.body_mass, (RealRange{0, 1e6, true}),
-                "kg, drawn uniformly for each episode, body by body; {} = as modelled"),
+                "range of the mass of each named body in kg, drawn uniformly for each episode; {} "
+                "= the masses of the model"),
   };
 }
 
@@ -114,19 +116,20 @@ std::vector<Key> ReplayKeys() {
       SHOAL_KEY(replay.min_size, (IntegerRange{1, 1'000'000'000}),
                 "sampleable transitions before the first batch"),
       SHOAL_KEY(replay.samples_per_insert, (RealRange{0, 1e6}),
-                "batch elements sampled per sampleable transition, over the run's env steps; as a "
-                "number 0 = no limit"),
+                "batch elements sampled per sampleable transition; a number (0 = no limit), or a "
+                "schedule over the run's env steps"),
       SHOAL_KEY(replay.band, (RealRange{0, 1e12}),
                 "width of the limiter's band in samples; 0 = computed"),
       SHOAL_KEY(replay.storage, (Choices{{"file", "memory"}}),
-                "file = ring in the run folder, survives the process; memory = anonymous"),
+                "file = ring file in the run folder, which outlives the replay server; memory = "
+                "anonymous memory, which is lost with it"),
       SHOAL_KEY(replay.keep, AnyValue{},
                 "keep replay.ring when the run has finished; a run that was interrupted or failed "
                 "keeps it in any case"),
       SHOAL_KEY(replay.shift_pad, (IntegerRange{0, 32}), "DrQ random shift in pixels; 0 = none"),
-      SHOAL_KEY(
-          replay.copies, (IntegerRange{1, 16}),
-          "batch elements per drawn transition, each shifted anew, one target for all; DrQ: 2"),
+      SHOAL_KEY(replay.copies, (IntegerRange{1, 16}),
+                "batch elements per drawn transition, each with its own random shift, all with one "
+                "target; DrQ: 2"),
       SHOAL_KEY(replay.target_shifts, (IntegerRange{0, 16}),
                 "DrQ's K: different shifts of the next frame among a transition's replay.copies, "
                 "over which its target is averaged; 0 = as many as copies"),
@@ -134,10 +137,12 @@ std::vector<Key> ReplayKeys() {
                 "DrQ's M: different shifts of the frame among a transition's replay.copies, over "
                 "which the critic's loss is averaged; 0 = as many as copies"),
       SHOAL_KEY(replay.n_step, (IntegerRange{1, 20}),
-                "steps whose rewards are summed before the next value; all within an episode"),
+                "number of steps, within an episode, whose rewards are summed before the value of "
+                "the state that follows"),
       SHOAL_KEY(replay.hindsight, (Choices{{"none", "future", "final", "episode"}}),
-                "source of the goals that samples get besides their own: achieved by the same "
-                "episode after the step, at its end, or anywhere; for tasks with goals"),
+                "source of the goals that replace those of samples: goals achieved in the same "
+                "episode after the step (future), at its end (final) or anywhere (episode); for "
+                "tasks with goals"),
       SHOAL_KEY(replay.hindsight_goals, (IntegerRange{0, 1000}),
                 "N: a share N / (N + 1) of the samples gets another goal"),
       SHOAL_KEY(replay.movement_share, (RealRange{0, 1}),
@@ -151,9 +156,9 @@ std::vector<Key> ReplayKeys() {
       SHOAL_KEY(replay.window_chunks, (IntegerRange{2, 1024}),
                 "chunks an actor may have unacknowledged"),
       SHOAL_KEY(replay.threads, (IntegerRange{0, 1024}),
-                "threads of the replay server that copy the frames of a batch, whose bytes do not "
-                "depend on their number; 0 = one, and up to four while copying takes most of its "
-                "time and there are four cores for each"),
+                "threads of the replay server that copy the frames of a batch; the bytes of a "
+                "batch do not depend on their number; 0 = one, and more while copying takes most "
+                "of the server's time: up to one for every four cores, at most four"),
   };
 }
 
@@ -172,14 +177,14 @@ std::vector<Key> LearnerKeys() {
       SHOAL_KEY(learner.precision, (Choices{{"auto", "f32", "bf16"}}),
                 "arithmetic of the large products; auto = bf16 with pixels "
                 "where the CPU has it natively, else f32"),
-      SHOAL_KEY(
-          learner.threads, (IntegerRange{0, 1024}),
-          "threads of the learner, each with a share of the batch's rows (ppo and encoders with "
-          "batch normalisation: with a share of each layer); 0 = as the run divides its cores "
-          "between them and actors, measured while it is young: from pixels, on one host of at "
-          "least four cores, but for ppo and lockstep; else at most half the cores this process "
-          "may use, or three quarters with an update for each eighth env step, all with one for "
-          "each; without pixels, but for ppo, 1"),
+      SHOAL_KEY(learner.threads, (IntegerRange{0, 1024}),
+                "threads of the learner, each with a share of the batch's rows (ppo and encoders "
+                "with batch normalisation: with a share of each layer); 0 = chosen by the run. "
+                "From pixels on one host with at least four cores (except ppo and lockstep), the "
+                "run measures at its beginning how to divide its cores between learner and actors. "
+                "Otherwise the learner gets at most half of the cores that this process may use; "
+                "three quarters if every eighth env step has an update, all if every env step has "
+                "one; without pixels (except ppo) it gets 1"),
       SHOAL_KEY(learner.learning_rate, positive,
                 "learning rate of Adam for actor, critic and temperature"),
       SHOAL_KEY(learner.actor_learning_rate, (RealRange{0, 1}),
@@ -187,10 +192,10 @@ std::vector<Key> LearnerKeys() {
       SHOAL_KEY(learner.critic_learning_rate, (RealRange{0, 1}),
                 "learning rate of critic and encoder; 0 = learner.learning_rate"),
       SHOAL_KEY(learner.rate_factor, (RealRange{0, 1}),
-                "factor on all learning rates, over the run's env steps"),
+                "factor on all learning rates; a number, or a schedule over the run's env steps"),
       SHOAL_KEY(learner.max_grad_norm, (RealRange{0, 1e6}),
-                "gradients of the actor, and those of critic and encoder, are scaled down to this "
-                "Euclidean norm; 0 = never"),
+                "largest Euclidean norm of the actor's gradients, and of those of critic and "
+                "encoder together; larger gradients are scaled down; 0 = no limit"),
       SHOAL_KEY(learner.discount, (RealRange{0, 1, false, true}), "discount per env step"),
       SHOAL_KEY(learner.reward_scale, (RealRange{0, 1e6, true}), "factor on every reward"),
       SHOAL_KEY(learner.tau, positive, "target heads: target += tau * (online - target)"),
@@ -200,16 +205,15 @@ std::vector<Key> LearnerKeys() {
       SHOAL_KEY(learner.actor_period, (IntegerRange{1, 1000}),
                 "updates per actor and temperature update"),
       SHOAL_KEY(learner.target_period, (IntegerRange{1, 100'000}), "updates per target update"),
-      SHOAL_KEY(
-          learner.mean_penalty, (RealRange{0, 1e6}),
-          "td3, ddpg: weight, in the actor's loss, of the mean square of the policy's outputs "
-          "before tanh; it keeps actions from saturating for good"),
+      SHOAL_KEY(learner.mean_penalty, (RealRange{0, 1e6}),
+                "td3, ddpg: weight, in the actor's loss, of the mean square of the policy's "
+                "outputs before tanh; it prevents actions from staying saturated"),
       SHOAL_KEY(learner.normalise_vectors, AnyValue{},
                 "scale vectors by their running mean and deviation, which are stored with the "
                 "policy; clipped at 10"),
       SHOAL_KEY(learner.variance_floor, (RealRange{0, 1}),
-                "for learner.normalise_vectors: lower bound of a variance, so that numbers that "
-                "hardly vary are not magnified; 1e-4 = deviations of at least 0.01"),
+                "for learner.normalise_vectors: lower bound of the variance, so that nearly "
+                "constant numbers are not magnified; 1e-4 = deviations of at least 0.01"),
       SHOAL_KEY(learner.bounded_targets, AnyValue{},
                 "clip target values to the range that rewards of -1 and 0 allow"),
       SHOAL_KEY(learner.weights_period, (IntegerRange{1, 1'000'000}),
@@ -237,8 +241,9 @@ std::vector<Key> SacKeys() {
                 "target entropy per action dimension, in nats, unless sac.target_entropy is "
                 "set; 0 aims at 0 nats"),
       SHOAL_KEY(sac.critic_blocks, (AnyValue{}),
-                "the critic sees these recorded blocks in place of pixels, beside the vectors "
-                "that the policy sees: true (all), false (it sees the pixels) or their names"),
+                "recorded blocks that the critic gets instead of pixels, in addition to the "
+                "vectors that the policy observes: true = all, false = none (the critic gets the "
+                "pixels), or a list of names"),
       SHOAL_KEY(sac.aux, (AnyValue{}),
                 "quantities that the encoder's features are also trained to predict: recorded "
                 "blocks or differences of two, as \"object\" or \"object-grip\"; [] = none"),
@@ -254,10 +259,10 @@ std::vector<Key> PpoKeys() {
                 "all environments a multiple of learner.batch"),
       SHOAL_KEY(ppo.epochs, (IntegerRange{1, 1000}), "passes over a rollout in one update"),
       SHOAL_KEY(ppo.clip, (RealRange{0, 10, true}),
-                "range of the probability ratio in the loss, 1 - clip to 1 + clip, over the run's "
-                "env steps"),
+                "the loss clips the probability ratio to 1 - clip .. 1 + clip; a number, or a "
+                "schedule over the run's env steps"),
       SHOAL_KEY(ppo.value_clip, (RealRange{0, 1e6}),
-                "largest change of a value from that before the update; 0 = no limit"),
+                "largest change of a predicted value in one update; 0 = no limit"),
       SHOAL_KEY(ppo.gae_lambda, (RealRange{0, 1}),
                 "lambda of generalised advantage estimation: 0 = one step, 1 = the whole rollout"),
       SHOAL_KEY(ppo.entropy_weight, (RealRange{0, 100}),
@@ -265,23 +270,25 @@ std::vector<Key> PpoKeys() {
       SHOAL_KEY(ppo.value_weight, (RealRange{0, 1e6}),
                 "weight of the squared value error in the loss"),
       SHOAL_KEY(ppo.target_kl, (RealRange{0, 1e6}),
-                "an update ends when the policy has moved by 1.5 times this divergence; 0 = never"),
+                "an update ends early when the KL divergence from the policy before the update "
+                "exceeds 1.5 times this value; 0 = never"),
       SHOAL_KEY(ppo.normalise_advantages, AnyValue{},
                 "advantages of a minibatch get mean 0 and deviation 1"),
       SHOAL_KEY(ppo.normalise_rewards, AnyValue{},
                 "rewards are divided by the running deviation of discounted returns; cut off at "
                 "10"),
       SHOAL_KEY(ppo.networks, (Choices{{"separate", "shared"}}),
-                "policy and value have networks of their own, or one with two outputs"),
+                "separate = one network each for policy and value; shared = one network with two "
+                "outputs"),
       SHOAL_KEY(ppo.initial_log_std, (RealRange{-20, 2}),
                 "log deviation of the policy before the first update"),
       SHOAL_KEY(ppo.versions_ahead, (IntegerRange{0, 1}),
-                "0 = an actor awaits the weights that follow its rollout; 1 = it plays the next "
+                "0 = an actor waits for the weights that follow its rollout; 1 = it plays the next "
                 "rollout meanwhile"),
       SHOAL_KEY(ppo.rollout_deadline, (RealRange{0.1, 60}),
-                "seconds from the arrival of the first rollout of an update to the update with "
-                "the rollouts that have arrived: at least half of them, after three times as long "
-                "any number, and always at least learner.batch steps"),
+                "time in seconds that an update waits for missing rollouts after its first one has "
+                "arrived; then it starts with at least half of the rollouts (after three times as "
+                "long, with any number), and always at least learner.batch steps"),
   };
 }
 
@@ -298,15 +305,17 @@ std::vector<Key> ExplorationKeys() {
       SHOAL_KEY(exploration.kind, (Choices{{"auto", "squashed_gaussian", "gaussian", "ou"}}),
                 "noise of the training actors; auto = the algorithm's own"),
       SHOAL_KEY(exploration.sigma, (RealRange{0, 10}),
-                "deviation of gaussian and ou noise, over the run's env steps"),
+                "standard deviation of gaussian and ou noise; a number, or a schedule over the "
+                "run's env steps"),
       SHOAL_KEY(exploration.theta, (RealRange{0, 1000}), "ou: pull towards zero per unit of time"),
       SHOAL_KEY(exploration.dt, (RealRange{0, 1, true}), "ou: units of time per env step"),
-      SHOAL_KEY(exploration.random_steps, (IntegerRange{0, 1'000'000'000'000}),
-                "env steps of the run, shared by the actors, that are played by uniform random "
-                "actions; all are before the first weights arrive"),
+      SHOAL_KEY(
+          exploration.random_steps, (IntegerRange{0, 1'000'000'000'000}),
+          "env steps at the beginning of the run that are played with uniform random actions, "
+          "divided among the actors; before the first weights arrive, all actions are random"),
       SHOAL_KEY(exploration.spread, (RealRange{1, 100}),
-                "noise of N actors is multiplied by factors from 1/spread to spread, "
-                "geometrically even; 1 = all alike"),
+                "the noise of N actors is multiplied by factors from 1/spread to spread in "
+                "geometric progression; 1 = equal noise"),
   };
 }
 
@@ -320,14 +329,14 @@ std::vector<Key> NetworkKeys() {
                 "path of a safetensors file that the encoder starts from, with Shoal's or "
                 "torchvision's names; empty = none"),
       SHOAL_KEY(network.pool, (IntegerRange{0, 16}),
-                "compact: average pooling of the images; 0 = 2, 1 = none"),
+                "compact: side of the images' average pooling in pixels; 0 = 2, 1 = no pooling"),
       SHOAL_KEY(network.filters, (IntegerRange{1, 4096}),
                 "compact: channels of each 3x3 convolution; [] = [32,32,32]"),
       SHOAL_KEY(network.strides, (IntegerRange{1, 8}),
                 "compact: stride of each convolution; [] = [2,1,2]"),
       SHOAL_KEY(network.encoders, (Choices{{"shared", "separate"}}),
-                "sac: shared = one, trained by the critic's loss; separate = the actor has its "
-                "own, trained by its loss"),
+                "sac: shared = one encoder, trained by the critic's loss; separate = the actor has "
+                "its own encoder, trained by the actor's loss"),
       SHOAL_KEY(
           network.target_encoder, AnyValue{},
           "sac: the target critic has an encoder of its own, which follows the critic's encoder"),
@@ -358,7 +367,7 @@ std::vector<Key> EvalKeys() {
                 "environments stepped together by the evaluation actor"),
       SHOAL_KEY(stop.success, (RealRange{0, 2}), "stop at this success rate; above 1 = never"),
       SHOAL_KEY(stop.evaluations, (IntegerRange{1, 1000}),
-                "newest evaluations whose episodes, pooled, must reach stop.success"),
+                "number of newest evaluations whose pooled episodes must reach stop.success"),
       SHOAL_KEY(stop.without_actors, (IntegerRange{20, 1'000'000}),
                 "the run ends when no training actor has worked for this many seconds"),
   };

@@ -30,8 +30,10 @@ uint64_t LastSession(const fs::path& file) {
   uint64_t last = 0;
   const auto [parsed, fault] = std::from_chars(text.data(), end, last);
   if (fault != std::errc() || std::string_view(parsed, end) != "\n") {
-    throw UsageError("'{}' does not hold a session number; remove it to begin with the clock's",
-                     file.string());
+    throw UsageError(
+        "'{}' does not hold a session number; remove it, and the next number is taken from the "
+        "clock",
+        file.string());
   }
   return last;
 }
@@ -68,7 +70,7 @@ uint64_t NextSession(const fs::path& run, const std::string& process, int64_t wa
   } catch (const Error& e) {
     // The number in the file matters only if the clock is set back before this process has a
     // successor.
-    log::Warning("{}; going on with the clock's number", e.what());
+    log::Warning("{}; continuing with a number from the clock", e.what());
   }
   return session;
 }

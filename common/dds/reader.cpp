@@ -122,7 +122,7 @@ class DdsReader final : public link::ReaderEnd {
   void OnMalformed(uint64_t count) {
     if (Now() - last_said_ < kMalformedLogInterval) return;
     last_said_ = Now();
-    log::Warning("dds: topic {}: {} message(s) that make no sense were dropped, {} in all",
+    log::Warning("dds: topic {}: {} malformed message(s) dropped, {} in all",
                  Topic<M>::kSettings.name, count - said_, count);
     said_ = count;
   }

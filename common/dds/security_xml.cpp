@@ -28,7 +28,7 @@ fs::path PluginPath(const std::string& plugin) {
   for (const fs::path& path : {folder / "libddsc0debian" / name, folder / name}) {
     if (fs::exists(path)) return path;
   }
-  throw RuntimeError("DDS security: neither '{}' nor '{}' is there",
+  throw RuntimeError("DDS security: neither '{}' nor '{}' exists",
                      (folder / "libddsc0debian" / name).string(), (folder / name).string());
 }
 

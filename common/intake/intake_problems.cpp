@@ -53,7 +53,7 @@ void IntakeProblems::ReportChunks(const IntakeCounters& counters,
         1e-9 * (static_cast<double>(future_session_) - static_cast<double>(WallTimeNs())));
   }
   if (const uint64_t n = counters.malformed_chunks - before.malformed_chunks) {
-    log::Warning("{} chunks refused: their length or sequences make no sense", n);
+    log::Warning("{} chunks refused: their length or sequences are invalid", n);
   }
 }
 
@@ -66,7 +66,7 @@ void IntakeProblems::ReportRecords(const IntakeCounters& counters,
     log::Warning("{} records not used: an earlier one of their episode is missing", n);
   }
   if (const uint64_t n = counters.lost - before.lost) {
-    log::Warning("{} records are lost: an earlier {} had them in its memory", n, receiver_);
+    log::Warning("{} records are lost: they were in the memory of an earlier {}", n, receiver_);
   }
 }
 

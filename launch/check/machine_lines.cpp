@@ -91,7 +91,7 @@ CheckLine JudgeSystem(const std::vector<fs::path>& release_files) {
       release_files, [](const fs::path& path) { return access(path.c_str(), R_OK) == 0; });
   if (file == release_files.end()) {
     return {"system", Verdict::kOk,
-            "unknown: there is no os-release file (Debian 12 and 13 were tried)", ""};
+            "unknown: there is no os-release file (tested: Debian 12 and 13)", ""};
   }
   const std::string text = ReadFile(*file);
   const std::string name = ValueOf("PRETTY_NAME", text);
@@ -100,7 +100,7 @@ CheckLine JudgeSystem(const std::vector<fs::path>& release_files) {
       std::ranges::find(kTriedDebians, ValueOf("VERSION_ID", text)) != std::end(kTriedDebians);
   return {"system", Verdict::kOk,
           fmt::format("{}; {}", name.empty() ? "unnamed in " + file->string() : name,
-                      tried ? "tried" : "not tried (Debian 12 and 13 were)"),
+                      tried ? "tested" : "not tested (tested: Debian 12 and 13)"),
           ""};
 }
 

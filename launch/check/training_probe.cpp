@@ -118,7 +118,7 @@ CheckLine JudgeTraining(const TrainingProbe& probe) {
   const char* fault = !probe.finite      ? "an update was not finite"
                       : !probe.moved     ? "updates left the parameters as they were"
                       : !probe.restored  ? "a checkpoint read back is not what was written"
-                      : !probe.continued ? "a restored learner goes on differently"
+                      : !probe.continued ? "a restored learner computes different updates"
                                          : nullptr;
   if (fault != nullptr) {
     line.verdict = Verdict::kFail;

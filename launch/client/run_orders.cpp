@@ -74,7 +74,7 @@ std::string InForce(const RunViewMessage& message, const LiveKey& live, double v
 
 // After Ctrl-C: the order was accepted, and the run executes it without this command.
 int NotWaitedFor(const Say& say) {
-  say("accepted; not waited for");
+  say("accepted; this command did not wait for the effect");
   return 0;
 }
 
@@ -180,11 +180,11 @@ int ScaleActors(RunClient& client, int actors, const Say& say) {
   });
   if (!there && StopRequested()) return NotWaitedFor(say);
   if (!there) {
-    throw RuntimeError("accepted, but {} actors are not there within {} s: see shoal top", actors,
-                       kScaled.count());
+    throw RuntimeError("accepted, but {} actors have not reported within {} s: see shoal top",
+                       actors, kScaled.count());
   }
   if (!later.empty()) {
-    say("another command has changed that: " + later);
+    say("another command has changed the number again: " + later);
   } else {
     say(ending ? "the run is ending" : fmt::format("{} actor(s) report", actors));
   }

@@ -45,16 +45,16 @@ int Check(const CheckRequest& request, const std::string& json) {
 void AddCheckCommand(CLI::App& app, Action* chosen) {
   CLI::App* command =
       app.add_subcommand("check",
-                         "Can this machine train? CPU, cores, rendering, physics, transport, room, "
-                         "and a short training "
-                         "loop; each line OK, WARN or FAIL. Exit code 1 when one fails.");
+                         "Check whether this machine can train: CPU, cores, rendering, physics, "
+                         "transport, memory and disk space, and a short training loop; each line "
+                         "is OK, WARN or FAIL. Exit code 1 if a line is FAIL.");
   const auto request = std::make_shared<CheckRequest>();
   const auto json = std::make_shared<std::string>();
   const auto run_dir = std::make_shared<std::string>("runs");
   const auto peer = std::make_shared<std::string>();
   command->add_option("--json", *json,
-                      "File for the same, replaced if it is there; - for standard output (schema "
-                      "shoal-check-1)");
+                      "Write the result as JSON to this file, which is replaced; - for standard "
+                      "output (schema shoal-check-1)");
   command->add_option("--run-dir", *run_dir, "Folder that will hold the runs")
       ->capture_default_str();
   // Internal: the second process of the loopback measurement.

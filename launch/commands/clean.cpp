@@ -66,7 +66,7 @@ std::vector<Replay> NamedReplays(const CleanOptions& options) {
     if (const auto replay = ReplayOf(run)) {
       found.push_back(*replay);
     } else {
-      std::cout << (run / kRingFile).string() << " is not there\n";
+      std::cout << (run / kRingFile).string() << " does not exist\n";
     }
   }
   return found;
@@ -85,7 +85,9 @@ void PrintReplays(const std::vector<Replay>& replays) {
 
 bool Agreed(size_t files, uint64_t bytes) {
   if (isatty(STDIN_FILENO) == 0) {
-    throw UsageError("standard input is no terminal to ask at: give --yes to remove them");
+    throw UsageError(
+        "standard input is not a terminal, so the removal cannot be confirmed: give --yes to "
+        "remove them");
   }
   std::cout << "remove " << files << " file(s), " << FormatBytes(bytes) << "? [y/N] " << std::flush;
   std::string answer;
@@ -123,7 +125,7 @@ int Clean(const CleanOptions& options) {
     if (Remove(replay)) {
       freed += replay.bytes;
     } else {
-      std::cout << "left alone, for it is running now: " << replay.run.string() << "\n";
+      std::cout << "kept because the run is running now: " << replay.run.string() << "\n";
     }
   }
   std::cout << FormatBytes(freed) << " freed\n";
@@ -134,14 +136,15 @@ int Clean(const CleanOptions& options) {
 
 void AddCleanCommand(CLI::App& app, Action* chosen) {
   CLI::App* command = app.add_subcommand(
-      "clean", "Remove the replays of finished runs, by far their largest files, after asking.");
+      "clean",
+      "Remove the replays of finished runs, by far their largest files, after a confirmation.");
   const auto options = std::make_shared<CleanOptions>();
-  command->add_option("runs", options->runs,
-                      "Runs, by name or folder, finished or not; else every finished run without "
-                      "replay.keep");
+  command->add_option(
+      "runs", options->runs,
+      "Runs, by name or folder, finished or not; default: every finished run without replay.keep");
   command->add_option("--run-dir", options->run_dir, "Folder that holds the runs")
       ->capture_default_str();
-  command->add_flag("--yes", options->yes, "Do not ask");
+  command->add_flag("--yes", options->yes, "Remove without a confirmation");
   command->callback([=] { *chosen = [=] { return Clean(*options); }; });
 }
 

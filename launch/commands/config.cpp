@@ -11,8 +11,8 @@
 namespace shoal::launch {
 
 void AddConfigCommand(CLI::App& app, Action* chosen) {
-  CLI::App* command =
-      app.add_subcommand("config", "A table of every configuration key: default, range, meaning.");
+  CLI::App* command = app.add_subcommand(
+      "config", "Print a table of every configuration key: default, range, meaning.");
   const auto schema = std::make_shared<bool>(false);
   command->add_flag("--schema", *schema,
                     "Print a JSON Schema (2020-12) of presets and configuration files instead");

@@ -38,7 +38,7 @@ int DrawSheet(const worlds::ContactSheetRequest& request, const std::string& png
 
 void AddRender(CLI::App& env, Action* chosen) {
   CLI::App* command = env.add_subcommand(
-      "render", "One picture of a task, or of all tasks, cameras and qualities, to look at.");
+      "render", "Draw one picture of a task, or of all tasks, cameras and qualities.");
   const auto request = std::make_shared<worlds::RenderRequest>();
   const auto whole = std::make_shared<bool>(false);
   const auto sheet = std::make_shared<worlds::ContactSheetRequest>();
@@ -48,7 +48,7 @@ void AddRender(CLI::App& env, Action* chosen) {
   ExpectPng(command->add_option("--png", *png, "File to write")->required());
   command->add_option("--steps", request->env_steps, "Random env steps before the picture")
       ->capture_default_str();
-  command->add_option("--seed", request->seed, "Of the goal and the actions")
+  command->add_option("--seed", request->seed, "Seed of the goal and the actions")
       ->capture_default_str();
   command->add_option("--quality", request->quality, "fast | native | reference")
       ->capture_default_str();
@@ -56,23 +56,24 @@ void AddRender(CLI::App& env, Action* chosen) {
   command->add_option("--height", request->height, "Pixels")->capture_default_str();
   command->add_option("--model", request->model, "Another MJCF file for the task");
   command->add_flag("--goal", request->goal,
-                    "The goal reached, as observation.goal_mode = image shows it");
+                    "Draw the goal reached, as observation.goal_mode = image shows it");
   const auto segments = std::make_shared<bool>(false), depths = std::make_shared<bool>(false);
-  CLI::Option* segmentation = command->add_flag(
-      "--segmentation", *segments, "One colour for each geom instead (quality native)");
+  CLI::Option* segmentation = command->add_flag("--segmentation", *segments,
+                                                "Draw each geom in one colour (quality native)");
   CLI::Option* depth =
-      command->add_flag("--depth", *depths, "Grey, the nearest white, instead (quality native)")
-          ->excludes(segmentation);
-  CLI::Option* all =
       command
-          ->add_flag("--contact-sheet", *whole, "All tasks, cameras and qualities in one picture")
-          ->excludes(task);
+          ->add_flag("--depth", *depths, "Draw depths in grey, the nearest white (quality native)")
+          ->excludes(segmentation);
+  CLI::Option* all = command
+                         ->add_flag("--contact-sheet", *whole,
+                                    "Draw all tasks, cameras and qualities in one picture")
+                         ->excludes(task);
   for (const char* other :
        {"--goal", "--camera", "--steps", "--quality", "--width", "--height", "--model"}) {
     all->excludes(command->get_option(other));
   }
   all->excludes(segmentation)->excludes(depth);
-  command->add_option("--tile", sheet->side, "Pixels a side of a contact sheet's pictures")
+  command->add_option("--tile", sheet->side, "Side of each picture of a contact sheet in pixels")
       ->needs(all)
       ->capture_default_str();
   command->callback([=] {
@@ -89,12 +90,12 @@ void AddRender(CLI::App& env, Action* chosen) {
 }  // namespace
 
 void AddEnvCommand(CLI::App& app, Action* chosen) {
-  CLI::App* env = app.add_subcommand("env", "Look at environments.");
+  CLI::App* env = app.add_subcommand("env", "Describe, check and draw environments.");
   env->require_subcommand(1);
   env->fallthrough();  // --task-library is also accepted after the sub-command's arguments
   env->add_option_function<std::string>(
          "--task-library", [](const std::string& path) { worlds::LoadTasks(path); },
-         "Shared object with tasks of one's own (docs/own_task.md)")
+         "Shared object that defines further tasks (docs/own_task.md)")
       ->trigger_on_parse();
   AddEnvTaskCommands(*env, chosen);
   AddEnvCheckCommand(*env, chosen);

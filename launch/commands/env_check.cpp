@@ -90,8 +90,8 @@ int CheckEnvironment(const TrainOptions& options, const std::string& json) {
 void AddEnvCheckCommand(CLI::App& env, Action* chosen) {
   CLI::App* command = env.add_subcommand(
       "check",
-      "Make an environment of yours, play it, and say how it is observed, whether it repeats, and "
-      "whether hindsight is possible (docs/own_environment.md).");
+      "Create an environment of yours, play it, and report how it is observed, whether it repeats, "
+      "and whether hindsight is possible (docs/own_environment.md).");
   const auto environment = std::make_shared<std::string>();
   const auto options = std::make_shared<TrainOptions>();
   const auto json = std::make_shared<std::string>();
@@ -102,8 +102,8 @@ void AddEnvCheckCommand(CLI::App& env, Action* chosen) {
   command->add_option("--set", options->set, "KEY=VALUE, such as env.kwargs; may be repeated")
       ->allow_extra_args(false);
   command->add_option("--json", *json,
-                      "File for the same, replaced if it is there; - for standard output (schema "
-                      "shoal-env-check-1)");
+                      "Write the result as JSON to this file, which is replaced; - for standard "
+                      "output (schema shoal-env-check-1)");
   command->callback([=] {
     options->set.push_back("env.id=" + *environment);
     *chosen = [=] { return CheckEnvironment(*options, *json); };

@@ -107,20 +107,21 @@ int PlayRandom(const actor::RandomRequest& request, const std::string& json) {
 void AddJson(CLI::App* command, const std::string& schema, std::string* json) {
   command->add_option(
       "--json", *json,
-      "File for the same, replaced if it is there; - for standard output (schema " + schema + ")");
+      "Write the result as JSON to this file, which is replaced; - for standard output (schema " +
+          schema + ")");
 }
 void AddTask(CLI::App* command, std::string* task, std::string* model) {
   command->add_option("task", *task, "Task, e.g. FetchReachDense")->required();
   command->add_option("--model", *model, "Another MJCF file for the task");
 }
 void AddSeed(CLI::App* command, int64_t* seed) {
-  command->add_option("--seed", *seed, "Of the episodes and the random actions")
+  command->add_option("--seed", *seed, "Seed of the episodes and the random actions")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
 }
 
 void AddList(CLI::App& env, Action* chosen) {
-  CLI::App* command = env.add_subcommand("list", "Every task there is, one line each.");
+  CLI::App* command = env.add_subcommand("list", "List every task, one line each.");
   const auto json = std::make_shared<std::string>();
   AddJson(command, "shoal-env-list-1", json.get());
   command->callback([=] { *chosen = [=] { return List(*json); }; });
@@ -147,10 +148,10 @@ void CheckOptionsOf(const std::string& name, bool hosted,
 void AddDescribe(CLI::App& env, Action* chosen) {
   CLI::App* command = env.add_subcommand(
       "describe",
-      "A task's observations (shape, unit, meaning, bounds, measured range), what each action axis "
-      "does when moved alone, its reward and cameras. Of an environment of yours: how its spaces "
-      "become frames, blocks and actions. Of a run: inputs of its policy, and privileged inputs of "
-      "training.");
+      "Describe a task: its observations (shape, unit, meaning, bounds, measured range), the "
+      "effect of each action axis alone, its reward and cameras. For an environment of yours: how "
+      "its spaces become frames, blocks and actions. For a run: the inputs of its policy, and the "
+      "privileged inputs of training.");
   const auto request = std::make_shared<worlds::DescribeRequest>();
   const auto inputs = std::make_shared<InputsRequest>();
   const auto json = std::make_shared<std::string>();
@@ -163,9 +164,9 @@ void AddDescribe(CLI::App& env, Action* chosen) {
   run->excludes(task);
   command->add_option("--run-dir", inputs->run_dir, "Folder that holds the runs")
       ->capture_default_str();
-  CLI::Option* preset = command->add_option(
-      "--preset", inputs->preset,
-      "Preset in place of a task, or of an environment's runs: what a run of it would get");
+  CLI::Option* preset = command->add_option("--preset", inputs->preset,
+                                            "Preset instead of a task: describes the inputs of its "
+                                            "runs; with an environment, the preset of its runs");
   preset->excludes(run);
   CLI::Option* set =
       command
@@ -178,10 +179,14 @@ void AddDescribe(CLI::App& env, Action* chosen) {
           "shoal-env-1, of a run or a preset shoal-inputs-1, of an environment or its run "
           "shoal-env-mapping-1",
           json.get());
-  command->add_option("--probe-steps", request->probe_env_steps, "Env steps of one command")
+  command
+      ->add_option("--probe-steps", request->probe_env_steps,
+                   "Env steps for which one action axis is moved")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->add_option("--random-steps", request->random_env_steps, "Env steps to measure ranges in")
+  command
+      ->add_option("--random-steps", request->random_env_steps,
+                   "Random env steps from which the ranges are measured")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
   AddSeed(command, &request->seed);
@@ -200,10 +205,10 @@ void AddDescribe(CLI::App& env, Action* chosen) {
 }
 
 void AddRewardCheck(CLI::App& env, Action* chosen) {
-  CLI::App* command = env.add_subcommand("reward-check",
-                                         "Is every step's reward what the goal half computes and "
-                                         "what the formula says, also for goals "
-                                         "put in later? Exit code 1 when a number differs.");
+  CLI::App* command =
+      env.add_subcommand("reward-check",
+                         "Compare every step's reward with the goal half and with the formula, "
+                         "also for relabelled goals. Exit code 1 if a number differs.");
   const auto request = std::make_shared<worlds::RewardCheckRequest>();
   const auto json = std::make_shared<std::string>();
   AddTask(command, &request->task, &request->model);
@@ -218,7 +223,7 @@ void AddRewardCheck(CLI::App& env, Action* chosen) {
 void AddRandom(CLI::App& env, Action* chosen) {
   CLI::App* command = env.add_subcommand(
       "random",
-      "What uniform random actions earn, or doing nothing, and how that depends on the threshold.");
+      "Measure the score of uniform random or zero actions, and its dependence on the threshold.");
   const auto request = std::make_shared<actor::RandomRequest>();
   const auto json = std::make_shared<std::string>();
   AddTask(command, &request->task, &request->model);

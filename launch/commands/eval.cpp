@@ -85,7 +85,7 @@ int Evaluate(const EvalOptions& options) {
   if (seed == kReservedEvaluationSeed) {
     fmt::print(
         stderr,
-        "seed {} is kept for final figures: choose no recipe or checkpoint by its episodes\n",
+        "seed {} is reserved for final figures: do not select recipes or checkpoints with it\n",
         seed);
   }
   const ScratchFolder scratch;
@@ -112,8 +112,8 @@ int Evaluate(const EvalOptions& options) {
   if (std::cmp_less(point->episodes, options.episodes)) {
     output.Write(result);
     return WasInterrupted(
-        fmt::format("partial, the first {} of {} episodes: as --episodes {} plays", point->episodes,
-                    options.episodes, point->episodes));
+        fmt::format("partial: the first {} of {} episodes, equal to a run with --episodes {}",
+                    point->episodes, options.episodes, point->episodes));
   }
   Config played = ReadRunConfig(run).config;
   if (!HasBaselines(played)) {
@@ -128,7 +128,7 @@ int Evaluate(const EvalOptions& options) {
       played, StopRequested, [](const std::string& line) { fmt::print(stderr, "{}\n", line); });
   if (!baselines) {
     output.Write(result);
-    return WasInterrupted("baselines were left out");
+    return WasInterrupted("the baselines were skipped");
   }
   fmt::print(output.text(), "{} {}\n", played.task, FormatBaselines(*baselines));
   output.Write(WithBaselines(result, *baselines));
@@ -138,10 +138,10 @@ int Evaluate(const EvalOptions& options) {
 }  // namespace
 
 void AddEvalCommand(CLI::App& app, Action* chosen) {
-  CLI::App* command = app.add_subcommand(
-      "eval",
-      "Evaluate a checkpoint on fresh episodes, with the policy's mean actions. Ctrl-C ends it "
-      "with the result of those that were played.");
+  CLI::App* command =
+      app.add_subcommand("eval",
+                         "Evaluate a checkpoint on fresh episodes, with the policy's mean actions. "
+                         "Ctrl-C ends it with the result of the episodes played so far.");
   const auto options = std::make_shared<EvalOptions>();
   AddCheckpointOptions(*command, &options->checkpoint);
   command->add_option("--episodes", options->episodes, "Episodes to play")
@@ -149,12 +149,12 @@ void AddEvalCommand(CLI::App& app, Action* chosen) {
       ->capture_default_str();
   command
       ->add_option("--seed", options->seed,
-                   "Names the episodes: equal seeds, equal episodes. Default: from the run's "
-                   "config.json, so that each run and recipe has episodes of its own")
+                   "Seed of the episodes: equal seeds give equal episodes. Default: derived from "
+                   "the run's config.json, so that each run and recipe has its own episodes")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--task", options->task,
-                      "Another task than the run's, whose observations and actions have the same "
-                      "sizes; without the run's randomization and model file");
+                      "Another task, whose observations and actions have the same sizes as the "
+                      "run's; played without the run's randomization and model file");
   command->add_option("--json", options->json,
                       "File for every episode; - for standard output (schema shoal-eval-1)");
   command->callback([=] { *chosen = [=] { return Evaluate(*options); }; });

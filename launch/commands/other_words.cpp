@@ -34,11 +34,11 @@ const std::vector<Advice>& Table() {
       {{"tensorboard", "curves"},
        "tensorboard --logdir runs shows curves; so do shoal web and shoal plot RUN"},
       {{"monitor", "watch", "dashboard", "ui"}, "shoal top RUN, or shoal web in a browser"},
-      {{"kill", "cancel", "abort"}, "shoal stop RUN ends a run in order"},
-      {{"resume", "continue"}, "shoal train --resume RUN goes on with a run"},
-      {{"sweep", "tune", "benchmark"}, "shoal experiment run FILE does arms x seeds"},
+      {{"kill", "cancel", "abort"}, "shoal stop RUN stops a run cleanly"},
+      {{"resume", "continue"}, "shoal train --resume RUN continues a run"},
+      {{"sweep", "tune", "benchmark"}, "shoal experiment run FILE runs arms x seeds"},
       {{"init", "create"}, "shoal new FOLDER makes a project"},
-      {{"doctor", "info"}, "shoal check looks at this machine"},
+      {{"doctor", "info"}, "shoal check checks this machine"},
       {{"envs", "tasks"}, "shoal env list lists tasks"},
       {{"presets"}, "shoal train --help lists presets"},
       {{"keys", "params"}, "shoal config lists keys"},
@@ -66,7 +66,7 @@ std::string HintForTrainWord(const std::string& word) {
   if (Contains(tasks::TaskNames(), word)) return "; it is a task: --task " + word;
   if (word.ends_with(".json")) return "; a file of keys is given by --config " + word;
   if (word.find('=') != std::string::npos) return "; keys are set by --set " + word;
-  if (IsRun(word)) return "; it is a run, which --resume goes on with";
+  if (IsRun(word)) return "; it is a run, which --resume continues";
   return NearestHint(word, ListPresets());
 }
 

@@ -48,14 +48,15 @@ void AddPeek(CLI::App* replay, Action* chosen) {
   command->add_option("--batch", options->batch, "Elements to draw")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "Of the draw")->capture_default_str();
+  command->add_option("--seed", options->seed, "Seed of the draw")->capture_default_str();
   command->callback([=] { *chosen = [=] { return Peek(*options); }; });
 }
 
 }  // namespace
 
 void AddReplayCommand(CLI::App& app, Action* chosen) {
-  CLI::App* replay = app.add_subcommand("replay", "Look into a run's replay, take episodes out.");
+  CLI::App* replay =
+      app.add_subcommand("replay", "Show batches of a run's replay, or export its episodes.");
   replay->require_subcommand(1);
   AddPeek(replay, chosen);
 }

@@ -24,7 +24,7 @@ int Runs(const std::string& dir, bool json) {
 }  // namespace
 
 void AddRunsCommand(CLI::App& app, Action* chosen) {
-  CLI::App* command = app.add_subcommand("runs", "List every run: how it stands, how far it came.");
+  CLI::App* command = app.add_subcommand("runs", "List every run with its state and progress.");
   const auto dir = std::make_shared<std::string>("runs");
   const auto json = std::make_shared<bool>(false);
   command->add_option("--run-dir", *dir, "Folder that holds the runs")->capture_default_str();

@@ -51,7 +51,7 @@ int Set(SteerWords words) {
     }
   }
   if (assignments.empty()) {
-    throw UsageError("set: nothing is to be set; usage: shoal set [RUN] KEY=VALUE...");
+    throw UsageError("set: the assignment is missing; usage: shoal set [RUN] KEY=VALUE...");
   }
   InstallStopSignals();
   RunConnection connection(ResolveTarget(words.target));
@@ -74,9 +74,7 @@ int Scale(SteerWords words) {
     }
   }
   if (words.actors == 0) {
-    throw UsageError(
-        "scale: how many actors there shall be is missing; usage: shoal scale "
-        "[RUN] N");
+    throw UsageError("scale: the number of actors is missing; usage: shoal scale [RUN] N");
   }
   InstallStopSignals();
   RunConnection connection(ResolveTarget(words.target));
@@ -95,26 +93,23 @@ int Stop(const TargetOptions& target) {
 void AddSteerCommands(CLI::App& app, Action* chosen) {
   const auto words = std::make_shared<SteerWords>();
 
-  CLI::App* set = app.add_subcommand(
-      "set", "Change keys of a running run: " + LiveKeyNames() + ". Recorded in its meta.json.");
+  CLI::App* set = app.add_subcommand("set", "Change keys of a running run: " + LiveKeyNames() +
+                                                ". The run's meta.json records each change.");
   AddNamedTargetOptions(*set, &words->target);
   set->add_option("assignment", words->words, "KEY=VALUE, one or more; or the run's name");
   set->callback([=] { *chosen = [=] { return Set(*words); }; });
 
-  CLI::App* scale = app.add_subcommand(
-      "scale",
-      "Change the number of actors of a running run. Those that go first flush what they "
-      "have.");
+  CLI::App* scale = app.add_subcommand("scale",
+                                       "Change the number of actors of a running run. Removed "
+                                       "actors send their remaining records first.");
   AddNamedTargetOptions(*scale, &words->target);
-  scale->add_option("actors", words->words, "How many there shall be; or the run's name");
-  scale->add_option("--actors", words->actors, "How many there shall be")
-      ->check(CLI::Range(1, kMost));
+  scale->add_option("actors", words->words, "Number of actors; or the run's name");
+  scale->add_option("--actors", words->actors, "Number of actors")->check(CLI::Range(1, kMost));
   scale->callback([=] { *chosen = [=] { return Scale(*words); }; });
 
-  CLI::App* stop = app.add_subcommand(
-      "stop",
-      "Stop a running run in order, as Ctrl-C does; returns when it has ended, with its "
-      "exit code. Ctrl-C here leaves it to itself.");
+  CLI::App* stop = app.add_subcommand("stop",
+                                      "Stop a running run as Ctrl-C does, wait for its end and "
+                                      "return its exit code. Ctrl-C here stops only the waiting.");
   AddTargetOptions(*stop, &words->target);
   stop->callback([=] { *chosen = [=] { return Stop(words->target); }; });
 }

@@ -8,7 +8,7 @@ namespace shoal::launch {
 
 namespace {
 
-constexpr char kTarget[] = "Name or folder of the run; the only one that is running when not given";
+constexpr char kTarget[] = "Name or folder of the run; default: the only running run";
 
 void AddRunDir(CLI::App& command, std::string* run_dir) {
   command.add_option("--run-dir", *run_dir, "Folder that holds the runs")->capture_default_str();
@@ -16,7 +16,7 @@ void AddRunDir(CLI::App& command, std::string* run_dir) {
 
 void AddPeer(CLI::App& command, TargetOptions* options) {
   command.add_option("--peer", options->peer,
-                     "HOST:PORT of a run anywhere, as the run showed it when it started");
+                     "HOST:PORT of a run on any host, as shoal train printed it at its start");
   command.add_option("--secure", options->secure,
                      "Folder of credentials of a secured run, with --peer (shoal secure init)");
 }
@@ -42,8 +42,9 @@ void AddNamedTargetOptions(CLI::App& command, TargetOptions* options) {
 }
 
 CLI::Option* AddCheckpointOptions(CLI::App& command, CheckpointWords* words) {
-  command.add_option("run,--run", words->run,
-                     "Run, by name or folder, for its best checkpoint; or RUN/checkpoints/NAME");
+  command.add_option(
+      "run,--run", words->run,
+      "Run (name or folder), which stands for its best checkpoint; or RUN/checkpoints/NAME");
   CLI::Option* checkpoint =
       command.add_option("--checkpoint", words->checkpoint,
                          "Name in RUN/checkpoints: best, step_N; without RUN as the argument");

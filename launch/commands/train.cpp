@@ -21,11 +21,11 @@ std::string PresetHelp() {
 void AddTrainCommand(CLI::App& app, Action* chosen) {
   CLI::App* command = app.add_subcommand(
       "train",
-      "Train a policy: starts replay, learner, actors and evaluation, watches them, stops them in "
-      "order and evaluates the best checkpoint. Ctrl-C stops in order, without that evaluation "
-      "(--resume goes on); twice at once. Ctrl-Z pauses the run. Keys (shoal config) are options, "
-      "too: --seed 3, --steps 20000, --learner.batch 256, and as other programs call them: --env, "
-      "--algo, --lr, --batch-size, --gamma, --threads.");
+      "Train a policy: starts replay, learner, actors and evaluation, watches and stops them, and "
+      "evaluates the best checkpoint. Ctrl-C stops cleanly and skips the evaluation (--resume "
+      "continues); a second Ctrl-C stops at once. Ctrl-Z pauses the run. Keys (shoal config) are "
+      "options, too: --seed 3, --steps 20000, --learner.batch 256, and so are the names that other "
+      "programs use: --env, --algo, --lr, --batch-size, --gamma, --threads.");
   const auto options = std::make_shared<TrainOptions>();
   const auto describe_keys = std::make_shared<bool>(false);
   command->add_option("--preset", options->preset, PresetHelp());
@@ -40,13 +40,13 @@ void AddTrainCommand(CLI::App& app, Action* chosen) {
                       "JSON file of other hosts that run actors (docs/cluster.md)");
   command->add_option("--secure", options->secure,
                       "Folder of credentials (shoal secure init): authenticated and encrypted");
-  command->add_option("--resume", options->resume, "Go on with a stopped run: its name or folder");
-  auto* init_from = command->add_option(
-      "--init-from", options->init_from,
-      "safetensors file that the networks start from: of a checkpoint, or of others by --name-map");
+  command->add_option("--resume", options->resume, "Continue a stopped run: its name or folder");
+  auto* init_from = command->add_option("--init-from", options->init_from,
+                                        "safetensors file that the networks start from: of a "
+                                        "checkpoint, or with --name-map of another program");
   command
       ->add_option("--name-map", options->name_map,
-                   "JSON file: our tensors' names to those of --init-from")
+                   "JSON file that maps Shoal's tensor names to those of --init-from")
       ->needs(init_from);
   command->add_flag("--in-process", options->in_process,
                     "Run replay, learner and actors as threads of this process, for a debugger "

@@ -72,7 +72,7 @@ std::string Ask(const std::string& what, const RemoteHost& host, const std::stri
   const std::string ends = fmt::format("\n{}\n", kAnswerEnds);
   const size_t begin = said.find(begins), end = said.rfind(ends);
   if (begin == std::string::npos || end == std::string::npos || end < begin + begins.size()) {
-    throw RuntimeError("{}: its answer was not passed on whole: {} bytes came", what, said.size());
+    throw RuntimeError("{}: its output is incomplete: received {} bytes", what, said.size());
   }
   return said.substr(begin + begins.size(), end - begin - begins.size());
 }

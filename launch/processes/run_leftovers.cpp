@@ -46,8 +46,8 @@ void WaitForFormerProcesses(const fs::path& run, std::chrono::seconds deadline,
     }
     if (!said) {
       say(
-          fmt::format("processes of an earlier session (such as {}) still store what they have: "
-                      "waiting up to {} s for them",
+          fmt::format("processes of an earlier session (such as {}) are still storing records: "
+                      "waiting up to {} s",
                       *pid, deadline.count()));
       said = true;
     }

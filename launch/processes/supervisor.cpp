@@ -215,7 +215,7 @@ void Supervisor::BackOff(Child& child, const ExitStatus& status, const std::stri
   std::string line =
       fmt::format("{}: {}; restart in {:.1f} s", child.down.name, reason, Seconds(restart.delay));
   if (restart.deaths > 1) {
-    line += fmt::format(" (death {} in a row; the next line is at {})", restart.deaths,
+    line += fmt::format(" (death {} in a row; death {} is reported next)", restart.deaths,
                         2 * restart.deaths);
   }
   say_(line);
@@ -275,8 +275,8 @@ void Supervisor::ExpectExit(std::string_view role) {
     if (!Is(role, child.spec)) continue;
     // The process will not be replaced, so its work stays unfinished.
     if (child.restart_at && !child.spec.expendable) {
-      unclean_exits_.push_back(
-          fmt::format("{}: had died, and is not started again while stopping", child.spec.Name()));
+      unclean_exits_.push_back(fmt::format(
+          "{}: died, and is not restarted because the run is stopping", child.spec.Name()));
       say_(unclean_exits_.back());
     }
     child.exit_expected = true;

@@ -32,8 +32,8 @@ void AddSession(const Session& name, uint64_t made, const SessionCounters& seen,
     sums->lost_with_process += made - seen.highest;
   }
   if (outlives_replay && seen.lost > 0) {
-    fault(fmt::format("{} records were reported stored in the replay file, but are not there",
-                      seen.lost));
+    fault(
+        fmt::format("{} records were acknowledged but are missing in the replay file", seen.lost));
   }
 }
 
@@ -81,8 +81,9 @@ std::string Accounting::Line() const {
   const std::string unknown =
       sessions_without_page == 0
           ? ""
-          : fmt::format("; {} session(s) without a counter page: made as far as the replay saw",
-                        sessions_without_page);
+          : fmt::format(
+                "; {} session(s) without a counter page: their made count is taken from the replay",
+                sessions_without_page);
   return fmt::format(
       "records: made {} {} stored {} + lost with a process {} + lost with a replay {} + rejected "
       "{} + "

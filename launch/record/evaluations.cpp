@@ -80,8 +80,8 @@ EvaluationPoint ParseEvaluation(const EvalMessage& message) {
   EvaluationPoint point = PointOf(ParseEvaluationObject(message.json, source), source);
   if (point.env_steps != message.env_steps || point.updates != message.version.update ||
       point.learner_session != message.version.session || point.checkpoint != message.checkpoint) {
-    throw RuntimeError("{}: its JSON tells of another one, at {} env steps, update {}", source,
-                       point.env_steps, point.updates);
+    throw RuntimeError("{}: its JSON describes another evaluation, at {} env steps, update {}",
+                       source, point.env_steps, point.updates);
   }
   return point;
 }

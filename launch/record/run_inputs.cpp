@@ -66,7 +66,7 @@ std::string PrivilegedLines(const RunConfig& run) {
                         spec.HasPixels() ? ", in place of pixels" : "");
   }
   if (!inputs.labels.empty()) {
-    text += fmt::format("  the encoder is taught  {}\n", fmt::join(inputs.labels, ", "));
+    text += fmt::format("  the encoder predicts   {}\n", fmt::join(inputs.labels, ", "));
   }
   if (!inputs.replay_blocks.empty()) {
     text += fmt::format("  the replay             {}\n", HindsightText(run));
@@ -102,8 +102,8 @@ std::string HindsightText(const RunConfig& run) {
   const std::vector<std::string> blocks = PrivilegedInputsOf(run.config, run.spec).replay_blocks;
   if (blocks.empty()) return "";
   const ReplayConfig& replay = run.config.replay;
-  const char* distance =
-      replay.movement == "displacement" ? "how far from there it ends" : "how far it still moves";
+  const char* distance = replay.movement == "displacement" ? "its remaining displacement"
+                                                           : "its remaining path length";
   return fmt::format("relabels goals with {}{}", fmt::join(blocks, ", "),
                      replay.movement_share > 0
                          ? fmt::format(" and draws {:.3g} % of the samples by {}",
@@ -133,10 +133,10 @@ std::string DescribeInputs(const RunConfig& run) {
       run.spec.task, PicturesText(run), Listed(run.spec, policy.blocks));
   if (!policy.object_blocks.empty()) {
     text +=
-        fmt::format("  of these tell of the object: {}\n", fmt::join(policy.object_blocks, ", "));
+        fmt::format("  of these describe the object: {}\n", fmt::join(policy.object_blocks, ", "));
   }
   text += PrivilegedLines(run);
-  return text + fmt::format("recorded besides: {}\n", Listed(run.spec, Unused(run)));
+  return text + fmt::format("also recorded: {}\n", Listed(run.spec, Unused(run)));
 }
 
 ordered_json InputsJson(const RunConfig& run) {

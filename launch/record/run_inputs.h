@@ -41,7 +41,7 @@ PrivilegedInputs PrivilegedInputsOf(const Config& config, const ObservationSpec&
 nlohmann::ordered_json ToJson(const PolicyInputs& inputs);
 nlohmann::ordered_json ToJson(const PrivilegedInputs& inputs);
 
-// "relabels goals with achieved_goal and draws 50 % of the samples by how far it still moves";
+// "relabels goals with achieved_goal and draws 50 % of the samples by its remaining path length";
 // empty if the replay uses no privileged block.
 std::string HindsightText(const RunConfig& run);
 

@@ -90,8 +90,8 @@ std::optional<Baselines> BaselineCache::Measure(
   CHECK(HasBaselines(config)) << config.env.id;
   if (const auto found = Find(config)) return found;
   say(
-      fmt::format("measuring what {} earns without a policy: {} episodes each of no-op and random, "
-                  "kept in {}",
+      fmt::format("measuring baselines of {}: {} episodes each with no-op and with random actions, "
+                  "stored in {}",
                   config.task, episodes_, folder_.string()));
   MakeFolders(folder_);
   worlds::LoadTasks(config.task_library);

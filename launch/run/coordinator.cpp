@@ -209,8 +209,8 @@ void Coordinator::SaySuspensions() {
   if (RefusedSuspensions() == refusals_said_) return;
   refusals_said_ = RefusedSuspensions();
   progress_.Say(
-      "a run on several hosts does not pause: it goes on; end it with Ctrl-C, and shoal train "
-      "--resume goes on with it");
+      "a run on several hosts cannot pause, so it keeps running; Ctrl-C stops it, and shoal train "
+      "--resume continues it");
 }
 
 void Coordinator::TakeMessages(SteadyTime now) {
@@ -253,7 +253,8 @@ void Coordinator::TakeCommands() {
 // The actors with the highest numbers leave first.
 void Coordinator::Scale(int from, int to) {
   if (!hosts_.empty()) {
-    throw RuntimeError("a run on several hosts has the actors that its hosts file says");
+    throw RuntimeError(
+        "a run on several hosts has a fixed number of actors, which its hosts file gives");
   }
   const char* actor = RoleName(Role::kActor);
   int id = from;

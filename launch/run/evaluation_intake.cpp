@@ -37,7 +37,7 @@ std::vector<EvalMessage> EvaluationIntake::Take(std::vector<EvalMessage> message
     } else if (now - evaluation.arrived < kWait && waiting_.size() < kMostWaiting) {
       waiting_.push_back(std::move(evaluation));
     } else {
-      Refuse(fmt::format("evaluation at {} env steps: the learner handed out no such parameters",
+      Refuse(fmt::format("evaluation at {} env steps: the learner sent no such weights",
                          evaluation.point.env_steps),
              now);
     }
@@ -56,9 +56,11 @@ EvaluationPoint EvaluationIntake::Figures(const EvalMessage& message) const {
 
 void EvaluationIntake::End(SteadyTime now) {
   for (const Waiting& evaluation : std::exchange(waiting_, {})) {
-    Refuse(fmt::format("evaluation at {} env steps: the run ended before the learner's word of it",
-                       evaluation.point.env_steps),
-           now);
+    Refuse(
+        fmt::format(
+            "evaluation at {} env steps: the run ended before the learner reported these weights",
+            evaluation.point.env_steps),
+        now);
   }
 }
 

@@ -47,7 +47,7 @@ void CheckThreads(const Config& config) {
                      config.learner.algorithm);
   }
   if (config.learner.threads == 0) {
-    throw UsageError("learner.threads=0: a run that goes on takes a number of at least 1");
+    throw UsageError("learner.threads=0: expected at least 1 in a running run");
   }
   CheckReplicas(config, config.learner.threads);
 }
@@ -105,7 +105,7 @@ SettingChange LiveSettings::Apply(const std::string& key, const std::string& ass
   Validate(changed);
   if (key == kThreadsKey) CheckThreads(changed);
   if (JsonOf(changed, key).is_string()) {
-    throw UsageError("{}: a run that goes on takes a number, which holds from now on", assignment);
+    throw UsageError("{}: expected a number; a running run accepts no schedule", assignment);
   }
   SettingChange change;
   change.key = key;

@@ -83,7 +83,7 @@ std::string PrivilegedText(const RunConfig& run) {
                                 run.spec.HasPixels() ? " in place of pixels" : ""));
   }
   if (!inputs.labels.empty()) {
-    lines.push_back(fmt::format("the encoder is taught {}", fmt::join(inputs.labels, ", ")));
+    lines.push_back(fmt::format("the encoder predicts {}", fmt::join(inputs.labels, ", ")));
   }
   if (!inputs.replay_blocks.empty()) lines.push_back("the replay " + HindsightText(run));
   if (lines.empty()) return "";

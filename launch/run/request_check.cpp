@@ -69,7 +69,8 @@ void ReadStartWeights(const TrainOptions& options, RunRequest* request) {
                      [&] { nn::ReadEncoderWeights(network, run.spec); });
   if (options.init_from.empty()) return;
   if (!network.encoder_weights.empty()) {
-    throw UsageError("--init-from: network.encoder_weights is set, too: expected one of both");
+    throw UsageError(
+        "--init-from: network.encoder_weights is also set: expected only one of the two");
   }
   request->initial_weights = nn::ReadNamedWeights(options.init_from, options.name_map);
   const auto agent = learner::MakeAgent(run.config, run.spec, nn::Precision::kF32);

@@ -46,8 +46,8 @@ void RefuseFinished(const fs::path& run, const RunMeta& meta, const Config& conf
   const bool evaluated = meta.final_return || config.eval.final_episodes == 0;
   if (!ended || !evaluated || !options.set.empty()) return;
   throw UsageError(
-      "run '{}' is finished ({} at {} env steps): nothing is left to do; --set env_steps=N, or "
-      "stop.success=2 where it reached its target, goes on",
+      "run '{}' is finished ({} at {} env steps). To continue: --set env_steps=N, or --set "
+      "stop.success=2 if it reached its target",
       run.string(), meta.exit, meta.env_steps);
 }
 
@@ -114,7 +114,8 @@ void CheckFiles(const fs::path& run, const RunConfig& config, const RunMeta& met
 Hosts ResumedHosts(const TrainOptions& options, const fs::path& run, const Config& config) {
   if (!fs::exists(HostsFile(run))) {
     if (options.hosts.empty()) return {};
-    throw UsageError("--hosts: run '{}' was started without; it goes on without", run.string());
+    throw UsageError("--hosts: run '{}' was started without other hosts: expected no --hosts",
+                     run.string());
   }
   Hosts hosts = ReadHostsFile(HostsToGoOn(options, run));
   CheckResumedHosts(hosts, config);

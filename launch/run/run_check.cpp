@@ -89,12 +89,12 @@ void Examination::LookAtRing() {
   const ReplayConfig& replay = config_.config.replay;
   if (OnPolicy()) return;
   const std::string refill = fmt::format(
-      "training goes on once the replay has been refilled to {} sampleable transitions "
+      "training continues once the replay has been refilled to {} sampleable transitions "
       "(replay.min_size)",
       replay.min_size);
   if (replay.storage == "memory") {
     if (meta_.env_steps > 0) {
-      Say(fmt::format("replay.storage=memory: what was stored is gone; {}", refill));
+      Say(fmt::format("replay.storage=memory: the stored records are lost; {}", refill));
     }
     return;
   }
@@ -105,7 +105,7 @@ void Examination::LookAtRing() {
         config_.spec,
         {.file = file, .capacity = static_cast<uint64_t>(replay.capacity), .run = {}});
   } else if (meta_.env_steps > 0) {
-    Say(fmt::format("'{}' is not there: the replay starts empty, env steps go on from {}; {}",
+    Say(fmt::format("'{}' is missing: the replay starts empty, env steps continue from {}; {}",
                     file.string(), meta_.env_steps, refill));
   }
 }
@@ -132,8 +132,8 @@ RunAccount Examination::RebuiltAccount(std::string* what) {
     made += page.made;
   }
   *what = fmt::format(
-      "from the actors' counters: what became of {} records is no longer known, they count as {}",
-      made, OnPolicy() ? "discarded" : "lost with a replay");
+      "from the actors' counters: what happened to {} records is unknown; they count as {}", made,
+      OnPolicy() ? "discarded" : "lost with a replay");
   return account;
 }
 
@@ -178,10 +178,10 @@ void Examination::LookAtSequenceLogs() {
   for (const auto& [session, state] : wanted) {
     const auto [actor, number] = session;
     const uint64_t made = seen.contains(session) ? seen[session] : 0;
-    Say(fmt::format(
-        "'{}' is {}: rebuilt; what actor {} made in that session beyond {} records is no longer "
-        "known, and its episodes go on at higher numbers",
-        actor::SequenceLogFile(run_, actor, number).string(), state, actor, made));
+    Say(
+        fmt::format("'{}' is {}: rebuilt; actor {} made at least {} records in that session, "
+                    "further ones are not counted, and its next episodes have higher numbers",
+                    actor::SequenceLogFile(run_, actor, number).string(), state, actor, made));
     Repair([=, this_run = run_, envs = static_cast<uint32_t>(config_.config.envs_per_actor),
             actor_number = actor, session_number = number] {
       actor::RebuildSequenceLog(this_run, actor_number, session_number, envs, made);
@@ -212,7 +212,7 @@ void Examination::LookAtSessions() {
     const auto [parsed, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (fault == std::errc() && std::string_view(parsed, text.data() + text.size()) == "\n")
       continue;
-    Say(fmt::format("'{}' is damaged: removed; the session begins with the clock's number",
+    Say(fmt::format("'{}' is damaged: removed; the next session number is taken from the clock",
                     it->path().string()));
     Repair([path = it->path()] {
       std::error_code ignored;
@@ -246,7 +246,7 @@ void Examination::LookAtCheckpoints() {
   if (all.empty()) return;
   throw UsageError(
       "none of {} checkpoint(s) can be used; the newest: {}; restore one, or move '{}' away to "
-      "learn anew with the replay that is there",
+      "train from scratch with the existing replay",
       all.size(), newest_fault, (run_ / kCheckpointFolder).string());
 }
 

@@ -47,7 +47,7 @@ std::optional<std::string> RunDecisions::Fail(const std::string& why) {
 std::optional<std::string> RunDecisions::OnReplay(const ReplayProgress& progress) {
   if (!progress_.OnReplay(progress)) return std::nullopt;
   return fmt::format(
-      "replay-{} starts empty, env steps go on from {}; training goes on once it holds {} "
+      "replay-{} starts empty, env steps continue from {}; training continues once it holds {} "
       "sampleable transitions again (replay.min_size)",
       progress.replay, env_steps(), config_.replay.min_size);
 }

@@ -51,9 +51,9 @@ class Judging {
   void Answer(const CommandMessage& command) {
     ReplyMessage reply{.client = command.client, .request = command.request};
     reply.accepted = command.verb == "stop";
-    reply.text = reply.accepted ? "training has ended; what is left of its evaluation is left out"
-                                : "training has ended and the run is being evaluated: nothing is "
-                                  "changed any more";
+    reply.text = reply.accepted ? "training has ended; the rest of the evaluation is skipped"
+                                : "training has ended and the run is being evaluated: its settings "
+                                  "can no longer change";
     stop_ = stop_ || reply.accepted;
     Say(fmt::format("command: {}: {}{}", command.verb,
                     reply.accepted ? "" : "refused: ", reply.text));
@@ -69,7 +69,7 @@ std::optional<EvaluationPoint> EvaluateAtEnd(const fs::path& run, const Config& 
                                              Judging& judging) {
   const fs::path checkpoint = JudgedCheckpoint(run);
   if (config.eval.final_episodes == 0 || checkpoint.empty()) return std::nullopt;
-  judging.Say(fmt::format("evaluating {} on {} fresh episodes; Ctrl-C to leave it out",
+  judging.Say(fmt::format("evaluating {} on {} fresh episodes; Ctrl-C skips the evaluation",
                           checkpoint.string(), config.eval.final_episodes));
   auto point = EvaluateByActor({.run = run,
                                 .checkpoint = checkpoint,
@@ -78,7 +78,7 @@ std::optional<EvaluationPoint> EvaluateAtEnd(const fs::path& run, const Config& 
                                 .json = run / kEvaluationFolder / kFinalEvaluationFile,
                                 .own_run = true},
                                [&judging] { return judging.Stops(); });
-  if (!point) judging.Say("the evaluation was left out");
+  if (!point) judging.Say("the evaluation was skipped");
   return point;
 }
 
@@ -93,7 +93,7 @@ fs::path FilmAtEnd(const fs::path& run, const Config& config, Judging& judging) 
       [&judging] { return judging.Stops(); },
       [&judging](const std::string& line) { judging.Say(line); });
   if (made) return film;
-  judging.Say("the film was left out");
+  judging.Say("the film was skipped");
   return {};
 }
 
@@ -138,10 +138,9 @@ void PrintSummary(const fs::path& run, const Config& config, const RunResult& re
     progress.Say("  " + line);
   }
   if (meta.exit == "interrupted") {
-    progress.Say(
-        fmt::format("  not evaluated: go on with shoal train --resume {0}, or judge it with shoal "
-                    "eval {0}",
-                    run.string()));
+    progress.Say(fmt::format(
+        "  not evaluated: continue with shoal train --resume {0}, or evaluate with shoal eval {0}",
+        run.string()));
   }
   if (meta.accounting) progress.Say("  " + meta.accounting->Line());
   if (!result.deaths.empty()) progress.Say("  deaths: " + result.deaths);
@@ -177,10 +176,10 @@ void RemoveRing(const fs::path& run, const Config& config, Progress& progress) {
 // Reports files that could not be written. Returns the exit code.
 int ReportUnwritten(const fs::path& run, const std::set<std::string>& unwritten,
                     Progress& progress) {
-  progress.Say(fmt::format(
-      "error: could not be written to the end: {}; the run itself went on. Make room, then shoal "
-      "train --resume {}",
-      fmt::join(unwritten, ", "), run.string()));
+  progress.Say(
+      fmt::format("error: not completely written: {}; training itself was not affected. Free disk "
+                  "space, then: shoal train --resume {}",
+                  fmt::join(unwritten, ", "), run.string()));
   return kUnwrittenExit;
 }
 

@@ -88,7 +88,8 @@ void ApplyResumeOptions(const TrainOptions& options, int cores, Config* config) 
       {!options.run_name.empty(), "--run-name"},   {options.overwrite, "--overwrite"},
       {!options.init_from.empty(), "--init-from"}, {options.lockstep, "--lockstep"}};
   for (const auto& [given, name] : refused) {
-    if (given) throw UsageError("--resume goes on with the run's own configuration: no {}", name);
+    if (given)
+      throw UsageError("--resume continues with the run's own configuration: expected no {}", name);
   }
   for (const std::string& assignment : options.set) {
     if (!assignment.starts_with("env_steps=") && !assignment.starts_with("stop.") &&

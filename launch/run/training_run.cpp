@@ -167,7 +167,7 @@ int Train(const TrainOptions& options, Detachment* detachment) {
   if (!options.prometheus.empty()) PrometheusEndpoint::Check(options.prometheus);
   const std::unique_ptr<dds::Bus> bus = dds::ClaimDomain(request.config.config.transport, &address);
   if (options.dry_run) {
-    fmt::print("configuration is good; actors observe: {}\n", request.config.spec.Summary());
+    fmt::print("configuration is valid; actors observe: {}\n", request.config.spec.Summary());
     return 0;
   }
   const RunFolder folder = TakeFolder(options, &request);

@@ -29,7 +29,7 @@ MetricFamily Describe(const std::string& name, const Metric* metric) {
                      (metric->kind == MetricKind::kStage && name.starts_with("seconds_"));
   if (grows) family.type = MetricType::Counter;
   const bool share = metric->kind == MetricKind::kStage && name.starts_with("share_");
-  // The meaning alone may be a part of a sentence whose subject is the name: "that came again".
+  // The name adds what the meaning leaves out, for example the quantile.
   family.help = name;
   std::ranges::replace(family.help, '_', ' ');
   if (!metric->meaning.empty()) family.help += fmt::format(": {}", metric->meaning);
@@ -68,7 +68,8 @@ class Families {
 std::vector<MetricFamily> PrometheusFamilies(const RunViewMessage& view) {
   static constexpr Metric kSteps{"", "", MetricKind::kGauge, "env steps", "stored in the run"};
   static constexpr Metric kUpdates{"", "", MetricKind::kGauge, "updates", "made in the run"};
-  static constexpr Metric kUp{"", "", MetricKind::kGauge, "", "1: it was heard lately"};
+  static constexpr Metric kUp{"", "", MetricKind::kGauge, "",
+                              "1 if the process reported recently, else 0"};
   Families families;
   families.Add("run_env_steps", &kSteps, {{"run", view.run}}, static_cast<double>(view.env_steps));
   families.Add("run_updates", &kUpdates, {{"run", view.run}}, static_cast<double>(view.updates));

@@ -12,7 +12,8 @@ inline constexpr Figure kFrameSpread{"frame_spread", "grey levels",
                                      "standard deviation of a frame's pixels; with pixels", false,
                                      ""};
 inline constexpr Figure kFrozenCameras{
-    "frozen_cameras", "", "that show one picture throughout a batch; with pixels", false, ""};
+    "frozen_cameras", "", "cameras that show the same picture throughout a batch; with pixels",
+    false, ""};
 inline constexpr const Figure* kFrameFigures[] = {&kFrameSpread, &kFrozenCameras};
 
 // Appends the two metrics; appends no metric without pixels. Only the first frames of the batch are

@@ -13,26 +13,30 @@ namespace shoal::learner {
 // rewards.
 inline constexpr Figure kRewardMean{"reward_mean", "", "mean of sampled rewards", false,
                                     "replay/reward_mean"};
-inline constexpr Figure kRewardStd{"reward_std", "", "their standard deviation", false,
+inline constexpr Figure kRewardStd{"reward_std", "", "standard deviation of sampled rewards", false,
                                    "replay/reward_std"};
-inline constexpr Figure kRewardMin{"reward_min", "", "the smallest", false, "replay/reward_min"};
-inline constexpr Figure kRewardMax{"reward_max", "", "the largest", false, "replay/reward_max"};
+inline constexpr Figure kRewardMin{"reward_min", "", "smallest sampled reward", false,
+                                   "replay/reward_min"};
+inline constexpr Figure kRewardMax{"reward_max", "", "largest sampled reward", false,
+                                   "replay/reward_max"};
 inline constexpr Figure kRewardAboveMinusHalf{
     "reward_above_minus_half", "",
-    "share of sampled rewards above -0.5: of a sparse task, of samples at the goal", false,
-    "replay/reward_above_minus_half"};
+    "share of sampled rewards above -0.5; in a sparse task, the share of samples at the goal",
+    false, "replay/reward_above_minus_half"};
 // The metrics of goals exist if the policy observes the achieved and the desired goal.
-inline constexpr Figure kGoalDistanceMean{"goal_distance_mean", "m",
-                                          "between sampled goals; observation.goal_mode = both",
-                                          false, "replay/goal_distance_mean"};
-inline constexpr Figure kGoalDistanceStd{"goal_distance_std", "m", "their standard deviation",
-                                         false, "replay/goal_distance_std"};
-inline constexpr Figure kGoalDistanceMin{"goal_distance_min", "m", "the smallest", false,
+inline constexpr Figure kGoalDistanceMean{
+    "goal_distance_mean", "m",
+    "mean distance between achieved and desired goals of samples; observation.goal_mode = both",
+    false, "replay/goal_distance_mean"};
+inline constexpr Figure kGoalDistanceStd{"goal_distance_std", "m",
+                                         "standard deviation of goal distances", false,
+                                         "replay/goal_distance_std"};
+inline constexpr Figure kGoalDistanceMin{"goal_distance_min", "m", "smallest goal distance", false,
                                          "replay/goal_distance_min"};
-inline constexpr Figure kGoalDistanceMax{"goal_distance_max", "m", "the largest", false,
+inline constexpr Figure kGoalDistanceMax{"goal_distance_max", "m", "largest goal distance", false,
                                          "replay/goal_distance_max"};
-inline constexpr Figure kGoalWithin{"goal_within", "", "share of them below 0.05 m", false,
-                                    "replay/goal_within_threshold"};
+inline constexpr Figure kGoalWithin{"goal_within", "", "share of goal distances below 0.05 m",
+                                    false, "replay/goal_within_threshold"};
 inline constexpr const Figure* kSampleFigures[] = {
     &kRewardMean,           &kRewardStd,        &kRewardMin,       &kRewardMax,
     &kRewardAboveMinusHalf, &kGoalDistanceMean, &kGoalDistanceStd, &kGoalDistanceMin,
@@ -45,15 +49,19 @@ void AddSampleFigures(const BatchView& batch, const ObservationSpec& spec, Updat
 // Metrics of the Q functions before an update, at the sampled actions.
 inline constexpr Figure kQ1Mean{"q1_mean", "", "mean of the first Q function", false,
                                 "replay/q1_mean"};
-inline constexpr Figure kQ1Std{"q1_std", "", "its standard deviation", false, "replay/q1_std"};
-inline constexpr Figure kQ2Mean{"q2_mean", "", "mean of the second one, if any", false,
-                                "replay/q2_mean"};
-inline constexpr Figure kQ2Std{"q2_std", "", "its standard deviation", false, "replay/q2_std"};
+inline constexpr Figure kQ1Std{"q1_std", "", "standard deviation of the first Q function", false,
+                               "replay/q1_std"};
+inline constexpr Figure kQ2Mean{"q2_mean", "", "mean of the second Q function, if there is one",
+                                false, "replay/q2_mean"};
+inline constexpr Figure kQ2Std{"q2_std", "", "standard deviation of the second Q function", false,
+                               "replay/q2_std"};
 inline constexpr Figure kQMinMean{"q_min_mean", "", "mean of the smaller Q", false,
                                   "replay/q_min_mean"};
-inline constexpr Figure kQMinStd{"q_min_std", "", "its standard deviation", false,
+inline constexpr Figure kQMinStd{"q_min_std", "", "standard deviation of the smaller Q", false,
                                  "replay/q_min_std"};
-inline constexpr Figure kQMinMin{"q_min_min", "", "its smallest", false, "replay/q_min_min"};
-inline constexpr Figure kQMinMax{"q_min_max", "", "its largest", false, "replay/q_min_max"};
+inline constexpr Figure kQMinMin{"q_min_min", "", "smallest value of the smaller Q", false,
+                                 "replay/q_min_min"};
+inline constexpr Figure kQMinMax{"q_min_max", "", "largest value of the smaller Q", false,
+                                 "replay/q_min_max"};
 
 }  // namespace shoal::learner

@@ -57,13 +57,13 @@ inline constexpr Figure kCriticLoss{.name = "critic_loss",
                                     .known_as = ""};
 inline constexpr Figure kActorLoss{.name = "actor_loss",
                                    .unit = "",
-                                   .meaning = "what the policy minimises",
+                                   .meaning = "loss of the policy",
                                    .headline = true,
                                    .known_as = ""};
-inline constexpr Figure kQMean{"q_mean", "", "predicted scaled return", false, ""};
-inline constexpr Figure kTargetMean{"target_mean", "", "what Q is pulled to", false, ""};
-inline constexpr Figure kLearningRate{"learning_rate", "", "in force; of several the critic's",
-                                      false, ""};
+inline constexpr Figure kQMean{"q_mean", "", "mean Q, the predicted scaled return", false, ""};
+inline constexpr Figure kTargetMean{"target_mean", "", "mean target of Q", false, ""};
+inline constexpr Figure kLearningRate{
+    "learning_rate", "", "learning rate in force; of several, the critic's", false, ""};
 inline constexpr Figure kActionSaturation{"action_saturation", "",
                                           "share of action components beyond 0.99", false, ""};
 inline constexpr Figure kCriticGradNorm{"critic_grad_norm", "", "norm of the critic's gradient",
@@ -75,6 +75,6 @@ inline constexpr Figure kTemperature{.name = "temperature",
                                      .meaning = "weight of the policy's entropy",
                                      .headline = true,
                                      .known_as = "ent_coef"};
-inline constexpr Figure kEntropy{"entropy", "nats", "of the policy", false, ""};
+inline constexpr Figure kEntropy{"entropy", "nats", "entropy of the policy", false, ""};
 
 }  // namespace shoal::learner

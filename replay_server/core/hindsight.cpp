@@ -118,8 +118,8 @@ void CheckHindsight(const RunConfig& run) {
   if (replay.hindsight == "none") {
     if (replay.movement_share == 0) return;
     throw UsageError(
-        "replay.movement_share = {} with replay.hindsight = none: how far something still moves is "
-        "known of whole episodes; expected future, final or episode, or a share of 0",
+        "replay.movement_share = {} with replay.hindsight = none: the remaining movement is known "
+        "for whole episodes only; expected future, final or episode, or a share of 0",
         replay.movement_share);
   }
   const tasks::Task& task = tasks::FindTask(run.spec.task);

@@ -72,9 +72,8 @@ int ReplayService::Run() {
             ring.last_id(), core_.index().sampleable());
   if (core_.ring_replaced()) {
     log::Warning(
-        "records that earlier servers had stored are gone ({}); env steps go on from {}; "
-        "refilling "
-        "to {} sampleable transitions (replay.min_size) before training goes on",
+        "records of earlier servers are lost ({}); env steps continue from {}; training continues "
+        "when the replay holds {} sampleable transitions again (replay.min_size)",
         Settings().replay.storage == "memory" ? "replay.storage=memory" : "the file is another one",
         ring.stored_steps(), Settings().replay.min_size);
   }
@@ -113,8 +112,8 @@ size_t ReplayService::MaxChunks() const {
 
 void ReplayService::RefuseMoreSessions() {
   throw UsageError(
-      "the replay keeps the accounts of {} actor sessions over a run and there were as many: no "
-      "actor can join or be restarted any more; start a new run, with fewer actors",
+      "the replay can count {} actor sessions in a run, and all are used: no actor can join or "
+      "restart; start a new run with fewer actors",
       kMaxSessions);
 }
 

@@ -166,7 +166,7 @@ TEST_F(ExperimentTest, CtrlCEndsInOrder) {
   EXPECT_EQ(Read("runs/a-s0/meta.json").at("exit"), "interrupted");
   const ProgramResult status =
       RunProgram({"shoal", "experiment", "status", out_.string()}, seconds(30));
-  EXPECT_THAT(status.out, HasSubstr("no command runs it"));
+  EXPECT_THAT(status.out, HasSubstr("no command is running it"));
 }
 
 TEST_F(ExperimentTest, CtrlCWhileBaselinesAreMeasuredIsAStopLikeAnyOther) {

@@ -229,7 +229,7 @@ TEST(Interrupt, WhileARunIsEvaluatedOrdersAreAnsweredAtOnce) {
   const ProgramResult stop = RunShoal(run, {"stop"});
   EXPECT_EQ(ExitCode(stop), 0) << stop.out << stop.err;
   EXPECT_EQ(training.End(seconds(30)), 0) << training.Output();
-  EXPECT_THAT(training.Output(), HasSubstr("the evaluation was left out"));
+  EXPECT_THAT(training.Output(), HasSubstr("the evaluation was skipped"));
 }
 
 }  // namespace

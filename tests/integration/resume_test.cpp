@@ -157,7 +157,7 @@ TEST(Evaluation, InterruptedKeepsWhatWasPlayed) {
   EXPECT_GT(played, 0u);
   EXPECT_LT(played, 100'000u);
   EXPECT_NE(said.find(fmt::format("{} episodes (seed ", played)), std::string::npos) << said;
-  EXPECT_NE(said.find(fmt::format("partial, the first {} of 100000 episodes", played)),
+  EXPECT_NE(said.find(fmt::format("partial: the first {} of 100000 episodes", played)),
             std::string::npos)
       << said;
 }

@@ -173,7 +173,7 @@ TEST_F(SlurmTest, AnExperimentIsAJobArrayOfItsRuns) {
   }
   const ProgramResult nothing = submit();
   EXPECT_EQ(ExitCode(nothing), 0);
-  EXPECT_NE(nothing.err.find("nothing is to be done"), std::string::npos) << nothing.err;
+  EXPECT_NE(nothing.err.find("no run is left to submit"), std::string::npos) << nothing.err;
 }
 
 }  // namespace

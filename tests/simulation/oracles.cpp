@@ -141,7 +141,7 @@ void Examination::CheckEvaluations() {
     // are made again.
     const bool fresh = begins && line.find("--resume") == std::string::npos;
     if (fresh || (begins && unwritten)) said.clear();
-    if (line.find("could not be written to the end") != std::string::npos) said.clear();
+    if (line.find("not completely written") != std::string::npos) said.clear();
     const size_t begin = line.find("coordinator: evaluation at ");
     const size_t end = line.find(" updates: ");
     if (begin == std::string::npos || end == std::string::npos) continue;

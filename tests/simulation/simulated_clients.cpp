@@ -59,7 +59,7 @@ bool IsDocumentedError(const ClientCall& call) {
            (call.verb == "attach" && call.last.ends_with("has been silent for 15 s"));
   }
   if (call.verb == "set") return call.last.starts_with("accepted, but not in force");
-  if (call.verb == "scale") return call.last.find(" actors are not there") != std::string::npos;
+  if (call.verb == "scale") return call.last.find(" actors have not reported") != std::string::npos;
   return call.verb == "stop" && call.last.find("another one has resumed") != std::string::npos;
 }
 
@@ -82,7 +82,7 @@ bool IsDocumented(const ClientCall& call) {
   if (call.last == "the run is ending") return true;
   if (call.verb == "set") return call.last.starts_with("in force: ");
   return call.last == call.arguments.at(0) + " actor(s) report" ||
-         call.last.starts_with("another command has changed that: actors: ");
+         call.last.starts_with("another command has changed the number again: actors: ");
 }
 
 void SimulatedClients::Begin(const std::string& words) { Start(words); }

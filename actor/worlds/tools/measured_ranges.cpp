@@ -50,7 +50,7 @@ std::string ToText(const std::vector<ConstantNumber>& constant, int observations
   for (const ConstantNumber& number : constant) {
     text += fmt::format(
         "  warning: {} of block '{}' was {:.4g} in all of {} observations: does the physics half "
-        "write what it is to be?\n",
+        "write its value?\n",
         number.name, number.block, number.value, observations);
   }
   return text;

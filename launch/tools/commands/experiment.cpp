@@ -16,7 +16,7 @@ namespace {
 int Status(const std::string& name) {
   const std::filesystem::path folder = FindNamed(name, ExperimentsIn());
   std::cout << StatusText(ReadOutcome(ReadExperiment(folder)));
-  if (!IsExperimentHeld(folder)) std::cout << "no command runs it at the moment\n";
+  if (!IsExperimentHeld(folder)) std::cout << "no command is running it now\n";
   return 0;
 }
 
@@ -43,12 +43,12 @@ void CheckUnique(const char* option, const std::vector<T>& values) {
 void AddRun(CLI::App& experiment, Action* chosen) {
   CLI::App* command = experiment.add_subcommand(
       "run",
-      "Do what is still to be done of an experiment: finished runs are skipped, interrupted ones "
-      "go on. Progress on stderr; on stdout one line of JSON per run. Ctrl-C stops in order.");
+      "Train the remaining runs of an experiment: finished runs are skipped, interrupted runs "
+      "continue. Progress on stderr; on stdout one line of JSON per run. Ctrl-C stops cleanly.");
   const auto options = std::make_shared<ExperimentOptions>();
   command
       ->add_option("experiment", options->definition,
-                   "Definition: a file (*.json), or the name of one that Shoal brings")
+                   "Definition: a file (*.json), or the name of one that Shoal provides")
       ->required();
   command->add_option("--seeds", options->seeds, "Seeds instead of the definition's: 0,1,2")
       ->delimiter(',')
@@ -56,18 +56,19 @@ void AddRun(CLI::App& experiment, Action* chosen) {
   command->add_option("--arms", options->arms, "Arms instead of all: NAME,NAME")->delimiter(',');
   command
       ->add_option("--jobs", options->jobs,
-                   "Runs side by side, each on cores of its own; their wall times are marked (1). "
-                   "With --slurm: tasks at a time (all)")
+                   "Number of runs side by side, each on its own cores; their wall times are "
+                   "marked; default 1. With --slurm: tasks at a time; default all")
       ->check(CLI::Range(1, 1024));
   command->add_option("--out", options->out, "Folder; experiments/NAME by default");
   command->add_flag("--retry-failed", options->retry_failed, "Try failed runs again");
   command->add_flag("--dry-run", options->dry_run, "Check everything, start nothing");
-  CLI::Option* const slurm = command->add_flag(
-      "--slurm", options->slurm, "Submit what is to be done as a Slurm job array, one run a task");
+  CLI::Option* const slurm =
+      command->add_flag("--slurm", options->slurm,
+                        "Submit the remaining runs as a Slurm job array, one run per task");
   command
       ->add_option("--sbatch", options->sbatch_options,
-                   "Option of sbatch, over those of the script: --sbatch=--partition=short; may be "
-                   "repeated")
+                   "Option of sbatch, which overrides the script's: --sbatch=--partition=short; "
+                   "may be repeated")
       ->needs(slurm);
   command->callback([=] {
     CheckUnique("--seeds", options->seeds);
@@ -78,7 +79,7 @@ void AddRun(CLI::App& experiment, Action* chosen) {
 
 void AddSlurmTask(CLI::App& experiment, Action* chosen) {
   CLI::App* command = experiment.add_subcommand(
-      "task", "Do one run of an experiment: what a task of a job array calls.");
+      "task", "Train one run of an experiment; each task of a job array calls this command.");
   const auto task = std::make_shared<ExperimentTask>();
   command->add_option("experiment", task->folder, "Folder of the experiment")->required();
   command->add_option("run", task->run, "ARM-sSEED")->required();
@@ -92,7 +93,8 @@ void AddSlurmTask(CLI::App& experiment, Action* chosen) {
 }
 
 void AddStatus(CLI::App& experiment, Action* chosen) {
-  CLI::App* command = experiment.add_subcommand("status", "How each run of an experiment stands.");
+  CLI::App* command =
+      experiment.add_subcommand("status", "Show the state of each run of an experiment.");
   const auto name = std::make_shared<std::string>();
   command->add_option("experiment", *name, "Name within experiments/, or folder")->required();
   command->callback([=] { *chosen = [=] { return Status(*name); }; });
@@ -101,8 +103,8 @@ void AddStatus(CLI::App& experiment, Action* chosen) {
 void AddSummary(CLI::App& experiment, Action* chosen) {
   CLI::App* command = experiment.add_subcommand(
       "summary",
-      "What an experiment has shown so far: success, return and ratios with intervals. Of a "
-      "summary.json: the same from the rows of that file alone.");
+      "Show the results of an experiment so far: success, return and ratios with intervals. A "
+      "summary.json gives the same from its rows alone.");
   const auto name = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
   command
@@ -115,8 +117,8 @@ void AddSummary(CLI::App& experiment, Action* chosen) {
 }  // namespace
 
 void AddExperimentCommand(CLI::App& app, Action* chosen) {
-  CLI::App* experiment =
-      app.add_subcommand("experiment", "Arms x seeds from one file (docs/experiments.md).");
+  CLI::App* experiment = app.add_subcommand(
+      "experiment", "Train and compare arms x seeds of one definition (docs/experiments.md).");
   experiment->require_subcommand(1);
   AddRun(*experiment, chosen);
   AddSlurmTask(*experiment, chosen);

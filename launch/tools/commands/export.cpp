@@ -95,19 +95,20 @@ int Export(const ExportOptions& options) {
 }  // namespace
 
 void AddExportCommand(CLI::App& app, Action* chosen) {
-  CLI::App* command = app.add_subcommand(
-      "export",
-      "A checkpoint's policy for other programs: an ONNX file from raw observations to actions, "
-      "compared with the policy before it is written, or parameters for Stable-Baselines3.");
+  CLI::App* command =
+      app.add_subcommand("export",
+                         "Export a checkpoint's policy for other programs: an ONNX file from raw "
+                         "observations to actions, compared with the policy before it is written, "
+                         "or parameters for Stable-Baselines3.");
   const auto options = std::make_shared<ExportOptions>();
   AddCheckpointOptions(*command, &options->checkpoint);
   command->add_option("--onnx", options->onnx, "ONNX file to write");
   command->add_option("--sb3", options->sb3,
                       "Zip file to write, for set_parameters of Stable-Baselines3");
-  command->add_option("--samples", options->samples,
-                      "safetensors file for observations and the policy's actions, to hold other "
-                      "programs to");
-  command->add_option("--seed", options->seed, "Of the observations")->capture_default_str();
+  command->add_option(
+      "--samples", options->samples,
+      "safetensors file for observations and the policy's actions, to compare other programs with");
+  command->add_option("--seed", options->seed, "Seed of the observations")->capture_default_str();
   command->callback([=] { *chosen = [=] { return Export(*options); }; });
 }
 

@@ -90,13 +90,13 @@ int Film(const FilmOptions& options) {
 void AddFilmCommand(CLI::App& app, Action* chosen) {
   CLI::App* command = app.add_subcommand(
       "film",
-      "An MP4 film of a run's policy: what it sees, pixel by pixel, beside a larger view, with "
-      "step, reward, return and success. Plays in browsers, as fast as the robot moves.");
+      "Film a run's policy as MP4: its input, pixel by pixel, beside a larger view, with step, "
+      "reward, return and success. The film plays in browsers, as fast as the robot moves.");
   const auto options = std::make_shared<FilmOptions>();
   CLI::Option* checkpoint = AddCheckpointOptions(*command, &options->checkpoint);
-  auto* across = command->add_flag(
-      "--across-checkpoints", options->across,
-      "The first checkpoint, two between and the best, one after the other: how it learned");
+  auto* across =
+      command->add_flag("--across-checkpoints", options->across,
+                        "Film the first checkpoint, two between and the best, one after the other");
   checkpoint->excludes(across);
   command
       ->add_option("--episodes", options->episodes,
@@ -105,13 +105,14 @@ void AddFilmCommand(CLI::App& app, Action* chosen) {
       ->check(CLI::Range(1, 1000));
   command->add_flag("--tensorboard", options->tensorboard,
                     "Also shows pictures of each checkpoint's first episode in TensorBoard");
-  command->add_option("--seed", options->seed, "Names the episodes: equal seeds, equal episodes")
+  command
+      ->add_option("--seed", options->seed, "Seed of the episodes: equal seeds give equal episodes")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command
       ->add_option("--quality", options->quality,
-                   "Of the larger view: fast | native | reference; default: native for runs in "
-                   "quality native, else reference")
+                   "Quality of the larger view: fast | native | reference; default: native for "
+                   "runs in quality native, else reference")
       ->check(CLI::IsMember({"fast", "native", "reference"}));
   command->add_option(
       "--output", options->output,

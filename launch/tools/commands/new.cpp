@@ -9,10 +9,9 @@
 namespace shoal::launch {
 
 void AddNewCommand(CLI::App& app, Action* chosen) {
-  CLI::App* command = app.add_subcommand(
-      "new",
-      "A project of one's own: a task, a preset and an experiment that build against this Shoal, "
-      "to be changed.");
+  CLI::App* command = app.add_subcommand("new",
+                                         "Create a project as a starting point: a task, a preset "
+                                         "and an experiment that build against this Shoal.");
   const auto folder = std::make_shared<std::string>();
   command->add_option("folder", *folder, "Folder to make; an existing one is refused")->required();
   command->callback([=] {

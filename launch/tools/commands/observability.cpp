@@ -38,21 +38,22 @@ std::vector<std::string> SplitAtCommas(const std::string& text) {
 }  // namespace
 
 void AddObservabilityCommand(CLI::App& env, Action* chosen) {
-  CLI::App* command = env.add_subcommand("observability",
-                                         "How well each set of cameras shows a quantity: the error "
-                                         "of a small network, trained on frames of "
-                                         "random play, on episodes that were held out.");
+  CLI::App* command =
+      env.add_subcommand("observability",
+                         "Measure how well each set of cameras shows a quantity: the error of a "
+                         "small network, trained on frames of random play, on held-out episodes.");
   const auto request = std::make_shared<ObservabilityRequest>();
   const auto sets = std::make_shared<std::vector<std::string>>();
   const auto json = std::make_shared<std::string>();
   command->add_option("task", request->task, "Task, e.g. FetchPush")->required();
   command
       ->add_option("--tell", request->labels,
-                   "Blocks, or differences of two, as sac.aux: object-grip")
+                   "Blocks, or differences of two blocks, as in sac.aux: object-grip")
       ->required();
   command->add_option("--cameras", *sets,
                       "Sets of cameras, each as front,side; every camera and pair by default");
-  command->add_flag("--hide-goal", request->goal_hidden, "As where goals are relabelled");
+  command->add_flag("--hide-goal", request->goal_hidden,
+                    "Hide the goal's marker, as in runs that relabel goals");
   command->add_option("--width", request->width, "Pixels")
       ->check(CLI::Range(8, 1024))
       ->capture_default_str();
@@ -61,19 +62,20 @@ void AddObservabilityCommand(CLI::App& env, Action* chosen) {
       ->capture_default_str();
   command->add_option("--quality", request->quality, "fast | native | reference")
       ->capture_default_str();
-  command->add_option("--encoder", request->encoder, "As network.encoder")->capture_default_str();
+  command->add_option("--encoder", request->encoder, "Encoder, a value of network.encoder")
+      ->capture_default_str();
   command->add_option("--samples", request->samples, "Frames, of which a fifth is held out")
       ->check(CLI::Range(20, 1'000'000))
       ->capture_default_str();
-  command->add_option("--updates", request->updates, "Of the network")
+  command->add_option("--updates", request->updates, "Updates of the network")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
-  command->add_option("--seed", request->seed, "Of the episodes and the random actions")
+  command->add_option("--seed", request->seed, "Seed of the episodes and the random actions")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_option("--json", *json,
-                      "File for the same, replaced if it is there; - for standard output (schema "
-                      "shoal-observability-1)");
+                      "Write the result as JSON to this file, which is replaced; - for standard "
+                      "output (schema shoal-observability-1)");
   command->callback([=] {
     for (const std::string& set : *sets) request->cameras.push_back(SplitAtCommas(set));
     *chosen = [=] { return Observe(*request, *json); };

@@ -74,9 +74,10 @@ void AddReplayExportCommand(CLI::App& replay, Action* chosen) {
       ->add_option("--output", options->output, "HDF5 file to write; Minari wants main_data.hdf5")
       ->required();
   CLI::Option* episodes =
-      command->add_option("--episodes", options->episodes, "At most so many; else all")
+      command
+          ->add_option("--episodes", options->episodes, "Largest number of episodes; default: all")
           ->check(CLI::PositiveNumber);
-  command->add_flag("--last", options->last, "Those that ended last, not those that ended first")
+  command->add_flag("--last", options->last, "Export the episodes that ended last instead of first")
       ->needs(episodes);
   command->callback([=] { *chosen = [=] { return RunExport(*options); }; });
 }

@@ -118,18 +118,18 @@ int MakeCard(const CardOptions& options) {
 void AddCardCommand(CLI::App& app, Action* chosen) {
   CLI::App* command = app.add_subcommand(
       "card",
-      "A run as a folder that model hubs take: README with metadata, results, config, policy.");
+      "Write a run as a folder for model hubs: README with metadata, results, config, policy.");
   const auto options = std::make_shared<CardOptions>();
   AddRunOption(*command, &options->run, &options->run_dir)->required();
-  command->add_option("--output", options->output, "Folder to make; RUN-card by default");
+  command->add_option("--output", options->output, "Folder to create; RUN-card by default");
   command->callback([=] { *chosen = [=] { return MakeCard(*options); }; });
 }
 
 void AddReportCommand(CLI::App& app, Action* chosen) {
-  CLI::App* command = app.add_subcommand(
-      "report",
-      "One HTML page of runs and experiments that needs nothing but itself: results with "
-      "intervals, curves, configuration, machine, commands. Needs gnuplot.");
+  CLI::App* command =
+      app.add_subcommand("report",
+                         "Write one self-contained HTML page of runs and experiments: results with "
+                         "intervals, curves, configuration, machine, commands. Needs gnuplot.");
   const auto options = std::make_shared<ReportOptions>();
   AddSubjects(command, &options->subjects);
   command->add_option("--output", options->output, "File to write")->capture_default_str();
@@ -139,7 +139,7 @@ void AddReportCommand(CLI::App& app, Action* chosen) {
 void AddCompareCommand(CLI::App& app, Action* chosen) {
   CLI::App* command = app.add_subcommand(
       "compare",
-      "Runs and experiments side by side: success, return, cost, with intervals over "
+      "Compare runs and experiments side by side: success, return, cost, with intervals over "
       "seeds; ratios of env steps; the keys in which they differ.");
   const auto options = std::make_shared<CompareOptions>();
   AddSubjects(command, &options->subjects);
@@ -147,26 +147,28 @@ void AddCompareCommand(CLI::App& app, Action* chosen) {
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   command->add_option("--json", options->json,
-                      "File for the same; - for standard output (schema shoal-comparison-1)");
+                      "Write the result as JSON to this file, which is replaced; - for standard "
+                      "output (schema shoal-comparison-1)");
   command->callback([=] { *chosen = [=] { return CompareSubjects(*options); }; });
 }
 
 void AddPlotCommand(CLI::App& app, Action* chosen) {
   CLI::App* command = app.add_subcommand(
-      "plot", "Learning curves, with bands from the smallest to the largest seed. Needs gnuplot.");
+      "plot",
+      "Draw learning curves, with bands from the smallest to the largest seed. Needs gnuplot.");
   const auto options = std::make_shared<PlotOptions>();
   AddSubjects(command, &options->subjects);
   command->add_option("--x", options->axis, "env-steps | updates | wall")->capture_default_str();
   command
       ->add_option("--y", options->figures,
-                   "success | return | distance; may be repeated; all there are by default")
+                   "success | return | distance; may be repeated; default: all that the runs have")
       ->allow_extra_args(false);
   command
       ->add_option(
           "--output", options->outputs,
           fmt::format("File to write, .png or .svg; may be repeated; {} by default", kDefaultPlot))
       ->allow_extra_args(false);
-  command->add_option("--title", options->title, "Above the curves");
+  command->add_option("--title", options->title, "Title above the curves");
   command->callback([=] { *chosen = [=] { return DrawPlot(*options); }; });
 }
 

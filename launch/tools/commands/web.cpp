@@ -28,11 +28,11 @@ int Web(const WebOptions& options) {
              options.run.empty() ? fmt::format("the runs of '{}'", options.run_dir)
                                  : fmt::format("run '{}'", options.run),
              server.Url());
-  fmt::print("{}\n",
-             options.listen.Loopback()
-                 ? "who has no token may look, on this host alone; Ctrl-C ends it"
-                 : "every holder of this address may look and steer, and the network between "
-                   "may read along; Ctrl-C ends it");
+  fmt::print("{}\n", options.listen.Loopback()
+                         ? "without the token, the page only shows runs, and only on this host; "
+                           "Ctrl-C ends the server"
+                         : "everyone with this address can watch and steer, and the network can "
+                           "read the traffic; Ctrl-C ends the server");
   std::fflush(stdout);
   for (int looks = 1; !StopRequested(); ++looks) {
     std::this_thread::sleep_for(kLook);
@@ -46,18 +46,19 @@ int Web(const WebOptions& options) {
 void AddWebCommand(CLI::App& app, Action* chosen) {
   CLI::App* command = app.add_subcommand(
       "web",
-      "A page to watch runs on, in a browser: states, curves, processes, films; with the token of "
-      "the printed address also set, scale, stop. Needs libjs-dygraphs.");
+      "Serve a web page that shows runs: states, curves, processes, films; with the token of the "
+      "printed address it can also set, scale and stop them. Needs libjs-dygraphs.");
   const auto options = std::make_shared<WebOptions>();
   options->listen.port = 8470;
   AddRunOption(*command, &options->run, &options->run_dir,
-               "Name or folder of the run to show; all of --run-dir when not given");
-  command->add_option("--secure", options->secure,
-                      "Folder of credentials of secured runs; as each run says when not given");
+               "Name or folder of the run to show; default: all runs of --run-dir");
+  command->add_option(
+      "--secure", options->secure,
+      "Folder of credentials of secured runs; default: the folder that each run was started with");
   command
-      ->add_option("--address", options->listen.address,
-                   "IPv4 address of this host to listen on; at all but a loopback one nothing is "
-                   "shown without the token")
+      ->add_option(
+          "--address", options->listen.address,
+          "IPv4 address of this host to listen on; other addresses than loopback require the token")
       ->capture_default_str();
   command->add_option("--port", options->listen.port, "Port to listen on; 0: any that is free")
       ->check(CLI::Range(0, 65535))

@@ -116,7 +116,8 @@ bool MeasureBaselines(const StoredExperiment& experiment) {
 ExperimentOutcome Summarize(const StoredExperiment& experiment) {
   const fs::path file = experiment.folder / ".summary.lock";
   const auto lock = FileLock::Take(file, Holding::kAlone, kOthersWrite);
-  if (!lock) throw RuntimeError("cannot write the summary: others hold '{}'", file.string());
+  if (!lock)
+    throw RuntimeError("cannot write the summary: another process has locked '{}'", file.string());
   ExperimentOutcome outcome = ReadOutcome(experiment);
   WriteSummary(outcome);
   return outcome;
@@ -191,14 +192,14 @@ int Submit(const StoredExperiment& experiment, const std::vector<ExperimentRun>&
            const ExperimentOptions& options) {
   const std::vector<ExperimentRun> missing = StillToBeDone(experiment, runs, options.retry_failed);
   if (missing.empty()) {
-    Say("nothing is to be done that is not under way or has failed (--retry-failed)");
+    Say("no run is left to submit, except failed ones (--retry-failed)");
     return 0;
   }
   const SlurmArray array = SubmitArray(
       experiment, missing, {.at_once = options.jobs, .sbatch_options = options.sbatch_options});
   Say(
       fmt::format("submitted job {}: {} run(s), {}; once it has ended, the same command submits "
-                  "what is still to be done",
+                  "the remaining runs",
                   array.job, missing.size(), array.script.string()));
   fmt::print("{}\n", ToJson(array).dump());
   return 0;
@@ -218,7 +219,7 @@ int RunExperiment(const ExperimentOptions& options) {
   const ExperimentPlan plan = PlanExperiment(folder, definition, source);
   CheckObservations(plan);
   if (options.dry_run) {
-    Say(fmt::format("{}: {} arm(s) x {} seed(s) are good", definition.name,
+    Say(fmt::format("{}: {} arm(s) x {} seed(s) are valid", definition.name,
                     options.arms.empty() ? definition.arms.size() : options.arms.size(),
                     (options.seeds.empty() ? definition.seeds : options.seeds).size()));
     return 0;
@@ -226,11 +227,11 @@ int RunExperiment(const ExperimentOptions& options) {
   const ExperimentFolder held(plan);
   const StoredExperiment& experiment = held.experiment();
   const std::vector<ExperimentRun> runs = RunsAskedFor(experiment, options);
-  Say(fmt::format("experiment {} in {}: {} runs; what each says: {}/logs", definition.name,
+  Say(fmt::format("experiment {} in {}: {} runs; their output is in {}/logs", definition.name,
                   experiment.folder.string(), runs.size(), experiment.folder.string()));
   if (!MeasureBaselines(experiment)) {
     Summarize(experiment);
-    Say("stopped before the first run: the same command goes on");
+    Say("stopped before the first run: the same command continues");
     return kInterruptedExit;
   }
   if (options.slurm) {

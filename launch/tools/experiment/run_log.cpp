@@ -67,7 +67,7 @@ void RunLog::Write(const RunEnding& ending) const {
 // If a kill cut the last line short, ends that line first, so that the new line stays separate.
 void RunLog::Append(const std::string& line) const {
   const auto lock = FileLock::Take(file_, Holding::kAlone, kOthersWrite);
-  if (!lock) throw RuntimeError("cannot write '{}': others hold it", file_.string());
+  if (!lock) throw RuntimeError("cannot write '{}': another process has locked it", file_.string());
   const Descriptor file(open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
   if (file.get() < 0) {
     throw RuntimeError("cannot write '{}': {}", file_.string(), std::strerror(errno));

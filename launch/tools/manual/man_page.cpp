@@ -91,19 +91,19 @@ std::string CommandSection(const CommandText& command) {
 constexpr char kExitStatus[] = R"(.SH EXIT STATUS
 .TP
 .B 0
-as asked
+success
 .TP
 .B 1
 something failed at run time; one line on standard error says what
 .TP
 .B 2
-the command line or the configuration makes no sense
+the command line or the configuration is invalid
 .TP
 .B 3
 a number was not finite: simulation, weights or losses
 .PP
-A program that SIGINT, SIGTERM or SIGHUP ended in order dies by that signal, which a shell shows as
-130, 143 or 129.
+A program that stops cleanly after SIGINT, SIGTERM or SIGHUP ends by that signal, which a shell
+shows as 130, 143 or 129.
 )";
 
 }  // namespace
@@ -129,10 +129,10 @@ std::string ConfigurationPage() {
       ".SH NAME\nshoal\\-configuration \\- keys that describe a training run\n.SH DESCRIPTION\n" +
       Roff(
           "A run is described by one set of keys, each with a default. A preset changes some "
-          "(shoal train --preset NAME), a file changes more (--config FILE), --set KEY=VALUE has "
-          "the last word. In JSON files sections are nested objects: {\"learner\": {\"batch\": "
-          "256}}; with --set they are dotted: learner.batch=256. The value after = is JSON; a "
-          "bare word is a string.\nshoal config --schema prints the same as a JSON Schema.") +
+          "(shoal train --preset NAME), a file changes more (--config FILE), and --set KEY=VALUE "
+          "overrides both. In JSON files sections are nested objects: {\"learner\": {\"batch\": "
+          "256}}; with --set they are dotted: learner.batch=256. The value after = is JSON; a bare "
+          "word is a string.\nshoal config --schema prints the same as a JSON Schema.") +
       "\n.SH KEYS\n";
   for (const KeyDescription& key : DescribeEachKey()) {
     page += fmt::format(".TP\n\\fB{}\\fR = {}\n{}.\n.br\nTakes {}.\n", Roff(key.path),

@@ -29,8 +29,8 @@ ObservationSpec SpecOfPolicy(const std::string& checkpoint) {
   ObservationSpec spec = policy::ReadCheckpointPolicy(checkpoint).description.spec;
   if (!spec.environment.empty()) return spec;
   throw UsageError(
-      "'{}' is a policy of {}, a task of Shoal's own; expected one of an environment of Python: "
-      "shoal_rl.make(policy.task) observes what it needs",
+      "'{}' is a policy of Shoal's own task {}; expected a policy of a Python environment: "
+      "shoal_rl.make(policy.task) makes the environment of a task",
       checkpoint, spec.task);
 }
 
@@ -152,10 +152,10 @@ void BindMapping(py::module_& module) {
            }),
            py::arg("path"))
       .def_property_readonly("environment", &Mapping::environment,
-                             "env.id of the run: 'Pendulum-v1'.")
+                             "env.id of the run, such as 'Pendulum-v1'.")
       .def("_observe", &Mapping::Observe, py::arg("arrays"), py::arg("first"))
       .def("action", &Mapping::Action, py::arg("action"),
-           "The action for env.step that a policy's action (A,) in [-1, 1] stands for.");
+           "Converts a policy's action (A,) in [-1, 1] to the action for env.step.");
 }
 
 }  // namespace shoal::python

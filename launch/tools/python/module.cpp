@@ -37,7 +37,7 @@ PYBIND11_MODULE(_native, module) {
   static py::object error =  // NOLINT: set once, when the module is loaded
       py::exception<shoal::Error>(module, "Error");
   error.attr("__module__") = "shoal_rl";
-  error.attr("__doc__") = "What was wrong and what was expected, in one line.";
+  error.attr("__doc__") = "An error of Shoal: what is wrong and what was expected, in one line.";
   error.inc_ref();
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {

@@ -121,31 +121,30 @@ std::string Summary(const policy::TrainedPolicy& policy) {
 }
 
 constexpr char kActMeaning[] =
-    "The actions of an evaluation, without exploration, each number in [-1, 1].\n\n"
-    "observation: a dict of arrays, `pixels` (K*C, H, W) uint8 and each block (size,), or each "
-    "with\n"
-    "N observations in front. Returns float32 (A,) or (N, A).";
+    "Returns the actions of an evaluation, without exploration, each number in [-1, "
+    "1].\n\nobservation: a dict of arrays, `pixels` (K*C, H, W) uint8 and each block (size,), or "
+    "each with\nN observations along the first dimension. Returns float32 (A,) or (N, A).";
 
 }  // namespace
 
 void BindPolicy(py::module_& module) {
   using policy::TrainedPolicy;
-  py::class_<TrainedPolicy>(module, "Policy", "A checkpoint's policy, which acts.")
+  py::class_<TrainedPolicy>(module, "Policy", "The policy of a checkpoint.")
       .def(py::init([](const py::object& path) {
              return std::make_unique<TrainedPolicy>(
                  py::cast<std::string>(py::module_::import("os").attr("fspath")(path)));
            }),
-           py::arg("path"), "path: a checkpoint's folder, wherever it lies.")
+           py::arg("path"), "path: a checkpoint's folder, in a run or copied elsewhere.")
       .def("act", &Act, py::arg("observation"), kActMeaning)
       .def_property_readonly(
           "task", [](const TrainedPolicy& policy) { return policy.spec().task; },
-          "What it was trained for: 'FetchReachDense'.")
+          "Task of the policy, such as 'FetchReachDense'.")
       .def_property_readonly(
           "algorithm", [](const TrainedPolicy& policy) { return policy.description().algorithm; },
-          "What trained it: a value of learner.algorithm.")
+          "Algorithm that trained the policy, a value of learner.algorithm.")
       .def_property_readonly(
           "action_size", [](const TrainedPolicy& policy) { return policy.spec().action_size; },
-          "A, the numbers of an action.")
+          "A, the number of components of an action.")
       .def_property_readonly(
           "pixels", [](const TrainedPolicy& policy) { return PixelShape(policy.spec()); },
           "(K*C, H, W) of one observation, with a goal picture "
@@ -158,10 +157,10 @@ void BindPolicy(py::module_& module) {
           "K, the frames of one observation, the oldest first.")
       .def_property_readonly(
           "cameras", [](const TrainedPolicy& policy) { return policy.spec().cameras; },
-          "Names, in the order of a frame's channels.")
+          "Names of the cameras, in the order of a frame's channels.")
       .def_property_readonly(
           "blocks", [](const TrainedPolicy& policy) { return ObservedBlocks(policy.spec()); },
-          "Name and size of each vector that it observes beside the pixels.")
+          "Name and size of each vector that the policy observes beside the pixels.")
       .def("__repr__", &Summary);
 }
 

@@ -143,14 +143,14 @@ std::string Notes(const Comparison& comparison) {
   std::string notes;
   for (const GroupFigures& group : comparison.groups) {
     if (!group.without_final.empty()) {
-      notes += fmt::format("not yet evaluated at the end, judged by the last evaluation: {}\n",
+      notes += fmt::format("no final evaluation yet, so the last evaluation counts: {}\n",
                            fmt::join(group.without_final, ", "));
     }
     if (!group.failed.empty()) {
       notes += fmt::format("failed: {}\n", fmt::join(group.failed, ", "));
     }
     if (!group.unevaluated.empty()) {
-      notes += fmt::format("not in the figures, without any evaluation: {}\n",
+      notes += fmt::format("no evaluation, not in the figures: {}\n",
                            fmt::join(group.unevaluated, ", "));
     }
   }

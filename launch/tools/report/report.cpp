@@ -113,9 +113,8 @@ std::string ResultsHtml(const Comparison& comparison) {
     missing.insert(missing.end(), group.unevaluated.begin(), group.unevaluated.end());
   }
   if (!early.empty()) {
-    html +=
-        EscapeMarkup(fmt::format("Not yet evaluated at the end, judged by the last evaluation: {}.",
-                                 fmt::join(early, ", ")));
+    html += EscapeMarkup(fmt::format("No final evaluation yet, so the last evaluation counts: {}.",
+                                     fmt::join(early, ", ")));
   }
   if (!failed.empty()) {
     html += EscapeMarkup(fmt::format(" Failed: {}.", fmt::join(failed, ", ")));

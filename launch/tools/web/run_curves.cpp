@@ -147,18 +147,18 @@ std::string RunCurves::Json() const {
     if (point.success) success.push_back({point.env_steps, *point.success});
     returns.push_back({point.env_steps, point.mean_return});
   }
-  add("success", "Success rate", "of whole episodes",
+  add("success", "Success rate", "success rate of whole episodes",
       {{"evaluations", success}, {"actors", ToJson(points_of(kSuccess))}});
-  add("return", "Return", "mean of whole episodes, unscaled",
+  add("return", "Return", "mean return of whole episodes, unscaled",
       {{"evaluations", returns}, {"actors", ToJson(points_of(kReturn))}});
   for (const learner::Figure* figure : learner::AllFigures()) {
     if (!figure->headline) continue;
     const std::string name(figure->name);
     add(name, name, std::string(figure->meaning), {{name, ToJson(points_of(name.c_str()))}});
   }
-  add("env_steps_per_second", "Env steps per second", "of all actors together",
+  add("env_steps_per_second", "Env steps per second", "env steps per second of all actors",
       {{"env steps/s", ToJson(points_of(kEnvSteps))}});
-  add("updates_per_second", "Updates per second", "of the learner",
+  add("updates_per_second", "Updates per second", "updates per second of the learner",
       {{"updates/s", ToJson(points_of(kUpdates))}});
   return ordered_json{{"complete", complete_}, {"charts", charts}}.dump();
 }

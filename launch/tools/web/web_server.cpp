@@ -149,10 +149,10 @@ bool WebServer::Impl::TurnedAway(const httplib::Request& request,
   const Caller caller = CallerOf(request);
   switch (Gate(listen, token).Decide(caller)) {
     case Access::kForeign:
-      Refuse(403,
-             "this request comes from a page of others, or under a name that is not this "
-             "server's",
-             response);
+      Refuse(
+          403,
+          "this request comes from another web site, or uses a host name that is not this server's",
+          response);
       return true;
     case Access::kNoToken:
       Refuse(401, "the token is missing or wrong: open the address that shoal web printed",
@@ -162,7 +162,7 @@ bool WebServer::Impl::TurnedAway(const httplib::Request& request,
       break;
   }
   if (request.has_header("Content-Encoding")) {
-    Refuse(415, "encoded bodies are not taken", response);
+    Refuse(415, "encoded bodies are not accepted", response);
     return true;
   }
   // The browser requests the parts of the page without the address's token, so a cookie carries it.

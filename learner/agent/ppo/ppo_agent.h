@@ -33,22 +33,25 @@
 namespace shoal::learner {
 
 inline constexpr Figure kValueLoss{"value_loss", "", "squared error of the values", true, ""};
-inline constexpr Figure kApproxKl{"approx_kl", "nats", "by how much the policy has moved", true,
-                                  ""};
-inline constexpr Figure kClipFraction{"clip_fraction", "", "share of steps whose ratio is clipped",
-                                      false, ""};
+inline constexpr Figure kApproxKl{
+    "approx_kl", "nats", "estimated KL divergence of the policy from the one before the update",
+    true, ""};
+inline constexpr Figure kClipFraction{
+    "clip_fraction", "", "share of steps whose probability ratio is clipped", false, ""};
 inline constexpr Figure kExplainedVariance{
-    "explained_variance", "", "of the returns, by the values before the update", true, ""};
-inline constexpr Figure kDeviation{"deviation", "", "of the policy, mean over actions", false,
-                                   "std"};
-inline constexpr Figure kGradNorm{"grad_norm", "", "norm of all gradients, before it is cut", false,
+    "explained_variance", "",
+    "share of the returns' variance that the values before the update explain", true, ""};
+inline constexpr Figure kDeviation{
+    "deviation", "", "standard deviation of the policy, mean over actions", false, "std"};
+inline constexpr Figure kGradNorm{"grad_norm", "", "norm of all gradients before clipping", false,
                                   ""};
 inline constexpr Figure kClipRange{"clip_range", "", "ppo.clip in force", false, ""};
-inline constexpr Figure kMinibatches{"minibatches", "", "steps of the optimiser", false, ""};
-inline constexpr Figure kRolloutSteps{"rollout_steps", "env steps", "the update was made of", false,
-                                      ""};
+inline constexpr Figure kMinibatches{"minibatches", "", "optimiser steps of the update", false, ""};
+inline constexpr Figure kRolloutSteps{"rollout_steps", "env steps",
+                                      "env steps that the update learned from", false, ""};
 inline constexpr Figure kRolloutLag{"rollout_lag", "updates",
-                                    "by which the policy that acted was behind", false, ""};
+                                    "updates between the policy that acted and the newest one",
+                                    false, ""};
 
 inline constexpr const Figure* kPpoFigures[] = {
     &kActorLoss,    &kValueLoss,  &kEntropy,          &kApproxKl,     &kClipFraction,

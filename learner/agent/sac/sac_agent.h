@@ -14,10 +14,11 @@
 namespace shoal::learner {
 
 inline constexpr Figure kTemperatureLoss{
-    "temperature_loss", "", "temperature times entropy above the target", false, "ent_coef_loss"};
+    "temperature_loss", "", "temperature times the excess of the entropy over its target", false,
+    "ent_coef_loss"};
 
-inline constexpr Figure kAuxError{"aux_error", "m", "root mean square error of what sac.aux tells",
-                                  false, ""};
+inline constexpr Figure kAuxError{
+    "aux_error", "m", "root mean square error of the predicted sac.aux labels", false, ""};
 
 // Metrics of an update, in the order of its report. The temperature is the value after the update;
 // the learning rate is the value that the update used. The metrics of the actor, and the metrics

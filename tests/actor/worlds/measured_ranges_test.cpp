@@ -56,7 +56,7 @@ TEST(ConstantNumbers, AreThoseThatNeverChanged) {
 TEST(ConstantNumbers, AreNamedInALineEach) {
   EXPECT_EQ(ToText(std::vector<ConstantNumber>{{"position", "y", 0.5}}, 511),
             "  warning: y of block 'position' was 0.5 in all of 511 observations: does the physics "
-            "half write what it is to be?\n");
+            "half write its value?\n");
   EXPECT_EQ(ToText(std::vector<ConstantNumber>(), 511), "");
 }
 

@@ -71,7 +71,8 @@ TEST_F(IntakeProblemsTest, TellsOfDropsGapsLossesAndWhatMakesNoSense) {
   Take({}, {.fate = ChunkFate::kMalformed});
   const std::string lines = Report(start_, /*dropped_chunks=*/5);
   EXPECT_THAT(lines, HasSubstr("3 records not used"));
-  EXPECT_THAT(lines, HasSubstr("4 records are lost: an earlier replay server had them"));
+  EXPECT_THAT(lines,
+              HasSubstr("4 records are lost: they were in the memory of an earlier replay server"));
   EXPECT_THAT(lines, HasSubstr("1 chunks refused: their length"));
   EXPECT_THAT(lines, HasSubstr("5 chunks dropped"));
 }

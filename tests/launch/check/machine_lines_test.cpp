@@ -36,14 +36,14 @@ TEST(MachineLines, TheSystemIsNamedAndWhetherItWasTried) {
     return judged.finding;
   };
   EXPECT_EQ(line("PRETTY_NAME=\"Debian GNU/Linux 12 (bookworm)\"\nVERSION_ID=\"12\"\nID=debian\n"),
-            "Debian GNU/Linux 12 (bookworm); tried");
+            "Debian GNU/Linux 12 (bookworm); tested");
   EXPECT_EQ(line("ID='debian'\nVERSION_ID=13\nPRETTY_NAME='Debian GNU/Linux 13'\n"),
-            "Debian GNU/Linux 13; tried");
+            "Debian GNU/Linux 13; tested");
   EXPECT_EQ(line("ID=debian\nVERSION_ID=\"11\"\nPRETTY_NAME=\"Debian GNU/Linux 11\"\n"),
-            "Debian GNU/Linux 11; not tried (Debian 12 and 13 were)");
+            "Debian GNU/Linux 11; not tested (tested: Debian 12 and 13)");
   EXPECT_EQ(line("ID=ubuntu\nVERSION_ID=\"12\"\nPRETTY_NAME=\"Ubuntu 12\"\n"),
-            "Ubuntu 12; not tried (Debian 12 and 13 were)");
-  EXPECT_THAT(line("ID=debian"), AllOf(HasSubstr("unnamed in"), HasSubstr("not tried")));
+            "Ubuntu 12; not tested (tested: Debian 12 and 13)");
+  EXPECT_THAT(line("ID=debian"), AllOf(HasSubstr("unnamed in"), HasSubstr("not tested")));
   EXPECT_THAT(JudgeSystem({folder.path() / "absent"}).finding, HasSubstr("unknown"));
 }
 

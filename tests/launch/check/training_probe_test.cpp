@@ -66,7 +66,7 @@ TEST(TrainingProbe, EveryFaultFailsTheLineByName) {
   EXPECT_THAT(finding(&TrainingProbe::finite), testing::HasSubstr("not finite"));
   EXPECT_THAT(finding(&TrainingProbe::moved), testing::HasSubstr("parameters"));
   EXPECT_THAT(finding(&TrainingProbe::restored), testing::HasSubstr("checkpoint"));
-  EXPECT_THAT(finding(&TrainingProbe::continued), testing::HasSubstr("goes on differently"));
+  EXPECT_THAT(finding(&TrainingProbe::continued), testing::HasSubstr("computes different updates"));
 }
 
 }  // namespace

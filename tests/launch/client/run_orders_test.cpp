@@ -87,7 +87,7 @@ TEST(ScaleActors, WaitsUntilSoManyReportOneMinuteAtMost) {
   coordinator.processes[1].state = "silent";
   const PlayedClient late =
       PlayClient([&](RunServer& server) { coordinator.Serve(server, seconds(90)); }, scale);
-  EXPECT_THAT(late.error, HasSubstr("2 actors are not there within 60 s"));
+  EXPECT_THAT(late.error, HasSubstr("2 actors have not reported within 60 s"));
   EXPECT_THAT(late.seconds, AllOf(Ge(60), Lt(62)));
   coordinator.processes[1].state = "running";
   const PlayedClient there =

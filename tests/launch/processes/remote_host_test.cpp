@@ -121,7 +121,7 @@ TEST_F(RemoteHostTest, WhatALoginPrintsIsNoAnswer) {
   // A login shell that discards the output of its command.
   host_.ssh = {"sh", "-c", "sh -c \"$0\" > /dev/null; echo Welcome"};
   EXPECT_THAT(Mistake([&] { FetchSequenceLogs(host_, actors, run_, Never); }),
-              AllOf(HasSubstr("host far"), HasSubstr("its answer was not passed on whole")));
+              AllOf(HasSubstr("host far"), HasSubstr("its output is incomplete")));
 }
 
 TEST_F(RemoteHostTest, ASecondPushRenewsTheAddressAndKeepsThePagesThatAreThere) {

@@ -60,8 +60,9 @@ TEST(Account, CountsWhatTheMemoryOfAKilledReplayHeldAsLost) {
 TEST(Account, WhatTheReplayFileLostIsAFault) {
   const MadeRecords made[] = {{0, kFirst, 10}};
   const RunAccount seen = Seen({{.actor = 0, .session = kFirst, .highest = 10, .lost = 4}});
-  EXPECT_THAT(Account(made, seen, {.own_actors = 4}).faults,
-              ElementsAre(HasSubstr("4 records were reported stored in the replay file")));
+  EXPECT_THAT(
+      Account(made, seen, {.own_actors = 4}).faults,
+      ElementsAre(HasSubstr("4 records were acknowledged but are missing in the replay file")));
 }
 
 TEST(Account, WhatWasInARemovedReplayFileIsLostWithTheReplay) {

@@ -35,14 +35,11 @@ RunConfig PushRun() {
 
 TEST(RunInputs, SayWhatThePolicyGetsAndWhatTrainingAloneIsTold) {
   EXPECT_EQ(DescribeInputs(PushRun()),
-            "FetchPush: what the policy gets, in training and at test time:\n"
-            "  pictures  front, side at 64x64, 1 frame(s), the goal's marker hidden\n"
-            "  numbers   grip (3), desired_goal (3)\n"
-            "privileged, in training alone:\n"
-            "  the critic sees        object (3), in place of pixels\n"
-            "  the encoder is taught  object-grip\n"
-            "  the replay             relabels goals with achieved_goal\n"
-            "recorded besides: object_velocity_from_grip (3)\n");
+            "FetchPush: what the policy gets, in training and at test time:\n  pictures  front, "
+            "side at 64x64, 1 frame(s), the goal's marker hidden\n  numbers   grip (3), "
+            "desired_goal (3)\nprivileged, in training alone:\n  the critic sees        object "
+            "(3), in place of pixels\n  the encoder predicts   object-grip\n  the replay           "
+            "  relabels goals with achieved_goal\nalso recorded: object_velocity_from_grip (3)\n");
 }
 
 // Neither network has the object as an input, but the samples are chosen by it.
@@ -51,13 +48,13 @@ TEST(RunInputs, WhatTheReplayGoesByIsPrivilegedToo) {
   run.config.sac.critic_blocks = false;
   run.config.sac.aux = {};
   run.config.replay.movement_share = 0.5;
-  EXPECT_THAT(DescribeInputs(run),
-              HasSubstr("privileged, in training alone:\n"
-                        "  the replay             relabels goals with achieved_goal and draws 50 % "
-                        "of the samples by how far it still moves\n"));
+  EXPECT_THAT(
+      DescribeInputs(run),
+      HasSubstr("privileged, in training alone:\n  the replay             relabels goals with "
+                "achieved_goal and draws 50 % of the samples by its remaining path length\n"));
   run.config.replay.movement = "displacement";
   EXPECT_THAT(DescribeInputs(run),
-              HasSubstr("50 % of the samples by how far from there it ends\n"));
+              HasSubstr("50 % of the samples by its remaining displacement\n"));
   run.config.replay.hindsight = "none";
   run.config.replay.movement_share = 0;
   EXPECT_THAT(DescribeInputs(run), HasSubstr("privileged, in training alone: nothing\n"));
@@ -79,12 +76,10 @@ TEST(RunInputs, NothingIsSaidToBeNothing) {
   RunConfig run;
   run.spec.task = "walker_walk";
   run.spec.blocks = {{"velocity", 9}};
-  EXPECT_EQ(DescribeInputs(run),
-            "walker_walk: what the policy gets, in training and at test time:\n"
-            "  pictures  none\n"
-            "  numbers   velocity (9)\n"
-            "privileged, in training alone: nothing\n"
-            "recorded besides: nothing\n");
+  EXPECT_EQ(
+      DescribeInputs(run),
+      "walker_walk: what the policy gets, in training and at test time:\n  pictures  none\n  "
+      "numbers   velocity (9)\nprivileged, in training alone: nothing\nalso recorded: nothing\n");
 }
 
 TEST(RunInputs, TheGoalsMarkerIsInPicturesUnlessItIsHidden) {
@@ -109,7 +104,7 @@ TEST(RunInputs, BlocksThatTellOfTheObjectAreNamed) {
   RunConfig run = PushRun();
   run.spec = spec;
   run.config.sac.critic_blocks = false;  // which leaves nothing to a critic of its own
-  EXPECT_THAT(DescribeInputs(run), HasSubstr("  of these tell of the object: object, "));
+  EXPECT_THAT(DescribeInputs(run), HasSubstr("  of these describe the object: object, "));
   // The achieved goal of a gripper alone reveals only the gripper.
   std::erase_if(spec.blocks,
                 [](const BlockSpec& block) { return block.name.starts_with("object"); });

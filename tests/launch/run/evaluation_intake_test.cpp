@@ -70,7 +70,7 @@ TEST_F(EvaluationIntakeTest, OneThatNobodyAskedForIsRefusedAfterTheWait) {
   EXPECT_THAT(Take({EvaluationMessage(1000, 100, 0.5)}), IsEmpty());
   EXPECT_THAT(Take({}, EvaluationIntake::kWait), IsEmpty());
   EXPECT_EQ(intake_.refused(), 1u);
-  EXPECT_THAT(said_, ElementsAre(HasSubstr("the learner handed out no such parameters")));
+  EXPECT_THAT(said_, ElementsAre(HasSubstr("the learner sent no such weights")));
 }
 
 TEST_F(EvaluationIntakeTest, WhatStillWaitsAtTheEndIsRefused) {

@@ -44,8 +44,8 @@ TEST(LiveSettings, ANumberTakesTheSchedulesPlaceAndAScheduleIsRefused) {
   config.replay.samples_per_insert = Schedule{64, 16, 1000};
   LiveSettings settings(config);
   EXPECT_EQ(Refusal(settings, "replay.samples_per_insert=linear(64,8,1000)"),
-            "replay.samples_per_insert=linear(64,8,1000): a run that goes on takes a number, which "
-            "holds from now on");
+            "replay.samples_per_insert=linear(64,8,1000): expected a number; a running run accepts "
+            "no schedule");
   const SettingChange change = settings.Assign("replay.samples_per_insert=32", 250);
   EXPECT_EQ(change.from, 52);
   EXPECT_EQ(change.to, 32);

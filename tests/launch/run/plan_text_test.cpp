@@ -77,13 +77,13 @@ TEST(PlanText, WhatOnlyTrainingIsToldIsSaid) {
   run.config.sac.aux = {"object-grip"};
   EXPECT_THAT(PlanText(run, 1),
               HasSubstr("  privileged, in training alone: the critic sees object in place of "
-                        "pixels, the encoder is taught object-grip\n"));
+                        "pixels, the encoder predicts object-grip\n"));
   run.spec.blocks.push_back({"achieved_goal", 3, /*observed=*/false});
   run.config.replay.hindsight = "future";
   run.config.replay.movement_share = 0.25;
   EXPECT_THAT(PlanText(run, 1),
-              HasSubstr("is taught object-grip, the replay relabels goals with achieved_goal and "
-                        "draws 25 % of the samples by how far it still moves\n"));
+              HasSubstr("predicts object-grip, the replay relabels goals with achieved_goal and "
+                        "draws 25 % of the samples by its remaining path length\n"));
 }
 
 TEST(PlanText, APolicyThatIsToldOfTheObjectBesidePicturesIsNamed) {

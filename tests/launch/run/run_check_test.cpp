@@ -111,7 +111,7 @@ TEST_F(RunCheckTest, AWholeRunNeedsNothing) {
 
 TEST_F(RunCheckTest, WithoutItsRingTheRunSaysSoAndCountsOn) {
   fs::remove(run_ / kRingFile);
-  EXPECT_THAT(Mend(), ElementsAre(AllOf(HasSubstr("replay starts empty, env steps go on from " +
+  EXPECT_THAT(Mend(), ElementsAre(AllOf(HasSubstr("replay starts empty, env steps continue from " +
                                                   std::to_string(meta_.env_steps)),
                                         HasSubstr("8 sampleable transitions"))));
   meta_.env_steps += 9;  // the account of a killed replay is up to a second old
@@ -124,7 +124,7 @@ TEST_F(RunCheckTest, ARunWhoseReplayWasInMemorySaysThatItIsRefilled) {
   config_.config.replay.storage = "memory";
   fs::remove(run_ / kRingFile);
   EXPECT_THAT(Check().lines,
-              ElementsAre(AllOf(HasSubstr("replay.storage=memory: what was stored is gone"),
+              ElementsAre(AllOf(HasSubstr("replay.storage=memory: the stored records are lost"),
                                 HasSubstr("8 sampleable transitions"))));
 }
 
@@ -160,7 +160,7 @@ TEST_F(RunCheckTest, WithoutTheRingTheAccountIsRebuiltFromTheActorsCounters) {
   fs::remove(run_ / kRingFile);
   fs::remove(run_ / kAccountingFile);
   EXPECT_THAT(Mend().at(1), AllOf(HasSubstr("accounting.json' is missing"),
-                                  HasSubstr("what became of 42 records is no longer known")));
+                                  HasSubstr("what happened to 42 records is unknown")));
   const RunAccount rebuilt = ReadAccount(run_);
   EXPECT_EQ(rebuilt.stored_steps, meta_.env_steps);
   ASSERT_EQ(rebuilt.sessions.size(), 1u);
@@ -171,7 +171,7 @@ TEST_F(RunCheckTest, ACounterPageIsRebuiltAndSaysWhatIsNoLongerKnown) {
   const auto rebuilt = [&](const std::string& state) {
     const auto lines = Mend();
     EXPECT_THAT(lines, ElementsAre(AllOf(HasSubstr("actor-0-10.page' is " + state),
-                                         HasSubstr("beyond 40 records is no longer known"))));
+                                         HasSubstr("made at least 40 records"))));
     const auto pages = actor::ReadSequenceLogs(run_);
     return pages.size() == 1 && pages[0].made == kRecords && pages[0].rebuilt;
   };
@@ -203,7 +203,8 @@ TEST_F(RunCheckTest, AnOlderCheckpointStandsInForADamagedOne) {
   EXPECT_THAT(Check().lines, ElementsAre(AllOf(HasSubstr("checkpoint refused"),
                                                HasSubstr("goes on from step_000000100"))));
   fs::resize_file(run_ / kCheckpointFolder / "step_000000100" / kLearnerFile, 3);
-  EXPECT_THAT(Refusal(), AllOf(HasSubstr("none of 2 checkpoint(s)"), HasSubstr("away to learn")));
+  EXPECT_THAT(Refusal(),
+              AllOf(HasSubstr("none of 2 checkpoint(s)"), HasSubstr("away to train from scratch")));
 }
 
 TEST_F(RunCheckTest, WhatCannotBeDerivedIsRefusedWithTheRemedy) {

@@ -337,7 +337,7 @@ TEST_F(RunDecisionsTest, SaysThatAReplayLostWhatItHeld) {
   const auto line =
       Run().OnReplay({.replay = 0, .session = 2, .stored_steps = 0, .stored_records = 0});
   ASSERT_TRUE(line);
-  EXPECT_THAT(*line, HasSubstr("replay-0 starts empty, env steps go on from 400"));
+  EXPECT_THAT(*line, HasSubstr("replay-0 starts empty, env steps continue from 400"));
   EXPECT_THAT(*line, HasSubstr("holds 300 sampleable"));
 }
 

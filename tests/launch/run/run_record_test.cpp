@@ -60,13 +60,13 @@ TEST_F(RunRecordTest, ACheckpointThatCannotBeKeptIsTriedAgain) {
   record_.KeepCheckpointsOf({point});
   EXPECT_THAT(record_.faults().failing(), ElementsAre("checkpoints/best"));
   record_.Retry();
-  EXPECT_THAT(lines_, ElementsAre(HasSubstr("tried again")));
+  EXPECT_THAT(lines_, ElementsAre(HasSubstr("retried")));
   fs::remove_all(checkpoints_ / point.checkpoint);
   Make(7, 1);
   record_.Retry();
   EXPECT_THAT(record_.faults().failing(), IsEmpty());
   EXPECT_EQ(Best(), "policy 7");
-  EXPECT_THAT(lines_, ElementsAre(HasSubstr("tried again"), "checkpoints/best: written again"));
+  EXPECT_THAT(lines_, ElementsAre(HasSubstr("retried"), "checkpoints/best: written again"));
 }
 
 TEST_F(RunRecordTest, WithoutAWrittenCheckpointTheFormerBestStays) {

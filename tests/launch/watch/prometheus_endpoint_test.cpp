@@ -103,9 +103,8 @@ TEST(PrometheusEndpoint, ShowsEveryFigureWithRunRoleIdAndHost) {
   EXPECT_THAT(page, HasSubstr("shoal_process_up" + actor + " 1"));
   EXPECT_THAT(page,
               HasSubstr(R"(shoal_process_up{run="reach",role="replay",id="0",host="box"} 0)"));
-  EXPECT_THAT(
-      page,
-      HasSubstr("# HELP shoal_policy_lag_p90 policy lag p90: done since the weights that acted"));
+  EXPECT_THAT(page, HasSubstr("# HELP shoal_policy_lag_p90 policy lag p90: updates from the "
+                              "weights that chose an action"));
   EXPECT_THAT(page, HasSubstr(R"(shoal_run_env_steps{run="reach"} 1200)"));
   EXPECT_THAT(page, Not(HasSubstr("rollout_return"))) << "not a number yet";
 }

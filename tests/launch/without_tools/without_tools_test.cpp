@@ -65,7 +65,7 @@ TEST(WithoutTools, OptionsOfARunThatNeedAToolAreRefusedBeforeItStarts) {
 TEST(WithoutTools, ATrainingIsCheckedAsEver) {
   const ProgramResult result = Shoal({"train", "--preset", "fetch-reach-fast", "--dry-run"});
   EXPECT_EQ(ExitCode(result), 0) << result.err;
-  EXPECT_THAT(result.out, HasSubstr("configuration is good"));
+  EXPECT_THAT(result.out, HasSubstr("configuration is valid"));
 }
 
 }  // namespace

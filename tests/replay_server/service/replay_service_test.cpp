@@ -98,7 +98,7 @@ TEST_F(ReplayServiceTest, LeavesForGoodWithOneLineWhenNoSessionFitsTheTableAnyMo
   ASSERT_TRUE(peers_->Write(a_.Chunk(1, 1)));
   // Long before it would miss the heartbeat.
   EXPECT_EQ(replay_->ExitCode(seconds(8)), 2) << replay_->Errors();
-  EXPECT_THAT(replay_->Errors(), HasSubstr("accounts of 4096 actor sessions"));
+  EXPECT_THAT(replay_->Errors(), HasSubstr("can count 4096 actor sessions"));
 }
 
 TEST_F(ReplayServiceTest, StoresAcknowledgesAnswersAndAccounts) {

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Policies, environments and runs of Shoal.
 
-Policy(path).act(observation)   acts by a checkpoint
-Mapping(path)                   what a policy observes of an environment of yours, and its actions there
+Policy(path).act(observation)   actions of a checkpoint's policy
+Mapping(path)                   converts between an environment of yours and a policy
 make(task, **keys)              a Gymnasium environment; make_vec(task, n, **keys): n side by side
-tasks()                         names of the tasks there are
-metrics(run), evaluations(run)  what a run has written, as data frames
+tasks()                         names of all tasks
+metrics(run), evaluations(run)  files of a run as data frames
 
-What is wrong is said by Error, in one line. Wants numpy; make also gymnasium, data frames pandas.
+Errors are raised as Error, with a message of one line. The package needs numpy, make also gymnasium,
+metrics and evaluations also pandas.
 """
 
 
@@ -18,7 +19,7 @@ def _why_not_native():
     folder = pathlib.Path(__file__).parent
     built = ", ".join(file.name for file in folder.glob("_native.*")) or "nothing compiled"
     python = f"Python {sys.version_info.major}.{sys.version_info.minor}"
-    return f"{folder} has {built}, this is {python}: use the Python that its wheel was built for"
+    return f"{folder} has {built}, but this is {python}: use the Python version that the wheel was built for"
 
 
 def _warn_of_one_core(mask):
@@ -30,8 +31,8 @@ def _warn_of_one_core(mask):
     found = " ".join(f"{name}={os.environ[name]}" for name in names if name in os.environ)
     if found and len(mask) == 1 and (os.cpu_count() or 1) > 1:
         warnings.warn(
-            f"this thread may use 1 of {os.cpu_count()} cores, and so may threads and processes that it "
-            f"starts, those of make_vec among them: an OpenMP library may have bound it, as {found} says",
+            f"this thread may use only 1 of {os.cpu_count()} cores, and threads and processes that it starts (such "
+            f"as those of make_vec) inherit this limit: an OpenMP library may have set it because of {found}",
             RuntimeWarning,
             stacklevel=4,
         )
@@ -101,12 +102,13 @@ __all__ = ["Error", "Mapping", "Policy", "__version__", "evaluations", "make", "
 def make(task, *, render_mode=None, **keys):
     """A gymnasium.Env of the task.
 
-    keys: those of a configuration that an environment has, observation.* by their last name: pixels,
-    cameras, grey, height, width, stack, goal_mode, proprioception, quality, custom_cameras;
-    task_library, model, physics, action_repeat, end_on_success, distance_threshold, body_mass. Without cameras: the
-    task's first. With pixels=False: state and goals, unless proprioception or goal_mode say what of
-    them. task_library: NAME.so of tasks of one's own (docs/own_task.md), which tasks() then has, too.
-    render_mode: None or "rgb_array", the latest frame, cameras side by side.
+    keys: configuration keys of an environment, without their section: pixels, cameras, grey, height,
+    width, stack, goal_mode, proprioception, quality, custom_cameras; task_library, model, physics,
+    action_repeat, end_on_success, distance_threshold, body_mass. The default of cameras is the task's
+    first camera. With pixels=False the environment observes state and goals; proprioception and
+    goal_mode select among them. task_library: NAME.so that defines further tasks (docs/own_task.md);
+    tasks() then lists them too. render_mode: None, or "rgb_array" for the latest frame with the cameras
+    side by side.
     """
     from shoal_rl.environment import Environment
 

@@ -52,14 +52,14 @@ def _configuration(keys):
 
 
 class Environment(gymnasium.Env):
-    """Made by shoal_rl.make.
+    """A task as a Gymnasium environment; shoal_rl.make returns it.
 
-    Observation: a dict of `pixels` (K*C, H, W) uint8, with goal_mode="image" ((K+1)*C, H, W) whose
-    last C show the goal reached, and the vectors that the keys ask for, float32.
-    Action: Box(-1, 1). info: `distance` (m) and `is_success`, where the task has a goal.
-    A step at which a number of the simulation is not finite truncates the episode: the observation
-    is the one before, the reward 0, and info's `fault` says why, as a RuntimeWarning does.
-    reset(seed=s) starts the first of the episodes that s names, reset() the next of them.
+    Observation: a dict of `pixels` (K*C, H, W) uint8 and of the vectors that the keys select, float32.
+    With goal_mode="image", `pixels` is ((K+1)*C, H, W) and the last C channels show the goal reached.
+    Action: Box(-1, 1). info: `distance` (m) and `is_success`, if the task has a goal.
+    If a number of the simulation is not finite, the step truncates the episode: it returns the previous
+    observation and reward 0, and info's `fault` and a RuntimeWarning give the reason.
+    reset(seed=s) starts the first episode of the seed s; reset() starts the next one.
     """
 
     metadata = {"render_modes": ["rgb_array"]}

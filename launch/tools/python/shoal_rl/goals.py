@@ -70,7 +70,7 @@ def _sparse_threshold(reward, goals, random):
     far = {reward(goal, goal + 1e3 * _direction(random, goal.size)) for goal in goals[:20]}
     if values != {0.0} or far != {-1.0}:
         raise NoGoal(
-            f"its reward is {sorted(values)} where a goal is reached and {sorted(far)} far from it; expected 0 and -1 "
+            f"its reward is {sorted(values)} at a reached goal and {sorted(far)} far from it; expected 0 and -1 "
             "(sparse), or minus the distance (dense)"
         )
     found = [_threshold_at(reward, goal, _direction(random, goal.size)) for goal in goals[:20]]
@@ -95,7 +95,7 @@ def _verify(reward, expected, threshold, goals, random):
         if abs(was - expected(exact)) > 1e-5 * (1 + exact):
             raise NoGoal(
                 f"its reward is {was:.6g} at a distance of {exact:.6g}, where {expected(exact):.6g} was expected from "
-                "the samples before"
+                "earlier samples"
             )
 
 

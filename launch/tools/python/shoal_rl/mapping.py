@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a policy of an environment of Python observes of it, as the actors of its run did."""
+"""Converts an environment's observations and actions for a policy, as the actors of its run did."""
 
 from collections.abc import Mapping as _Dictionary
 
@@ -14,15 +14,16 @@ def _arrays(observation, keys=()):
 
 
 class Mapping(_native.Mapping):
-    """Mapping(path): between an environment with Gymnasium's interface and the policy of a checkpoint.
+    """Mapping(path) connects an environment with Gymnasium's interface and the policy of a checkpoint.
 
-    path: the checkpoint's folder. One object for each environment: it keeps the stack of frames.
+    path: the checkpoint's folder. Each environment needs its own Mapping, which keeps the stack of
+    frames.
 
         inputs = mapping.reset(env.reset()[0])
         observation, *_ = env.step(mapping.action(policy.act(inputs)))
         inputs = mapping.observe(observation)
 
-    `inputs` are what Policy.act takes, and an exported policy: arrays by name.
+    `inputs` is a dict of arrays for Policy.act or an exported policy.
     """
 
     def reset(self, observation):

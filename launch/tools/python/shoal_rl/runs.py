@@ -11,7 +11,7 @@ def _pandas():
     try:
         import pandas
     except ImportError:
-        raise _native.Error("data frames want pandas, which is not installed") from None
+        raise _native.Error("data frames need pandas, which is not installed") from None
     return pandas
 
 
@@ -33,10 +33,10 @@ def _object(text, source):
 
 
 def metrics(run):
-    """metrics.jsonl: a row for each report of a process, by time.
+    """Reads metrics.jsonl: one row for each report of a process, in the order of time.
 
     run: the run's folder. Column `t` is a UTC time; figures that a process does not report are NaN.
-    What they mean: docs/monitoring.md.
+    docs/monitoring.md describes the columns.
     """
     pandas = _pandas()
     file = _run_folder(run) / "metrics.jsonl"
@@ -83,10 +83,11 @@ def _evaluation(file):
 
 
 def evaluations(run):
-    """eval/*.json: a row for each evaluation, by env steps; last the `final` one.
+    """Reads eval/*.json: one row for each evaluation in the order of env steps, the `final` one last.
 
-    run: the run's folder. success: rate, 0..1, and final_distance_mean: m, NaN where the task has
-    none; lengths in env steps; wall_seconds since the run's start, NaN for the final one.
+    run: the run's folder. success (rate, 0..1) and final_distance_mean (m) are NaN if the task has no
+    goals. Lengths are in env steps. wall_seconds is the time since the run's start, NaN for the final
+    evaluation.
     """
     pandas = _pandas()
     folder = _run_folder(run) / "eval"

@@ -103,7 +103,7 @@ function showProgress(progress) {
       best ? "at " + number(best.env_steps) + " env steps" : ""),
     tile(unknown(progress.rollout_success) ? "Actors' return" : "Actors' success",
       score(progress.rollout_success, progress.rollout_return),
-      "in their last episodes, of " + number(progress.rollout_length) + " env steps"),
+      "last episodes, mean length " + number(progress.rollout_length) + " env steps"),
     tile("Restarts", number(progress.restarts)));
 }
 
@@ -148,7 +148,7 @@ function showProcesses(answer) {
   const known = ["role", "id", "host", "pid", "state", "time"];
   const names = [...new Set(processes.flatMap((one) => Object.keys(one)))]
     .filter((name) => !known.includes(name)).sort();
-  $("view-time").textContent = "As reported at " + new Date(1000 * answer.view.time).toLocaleTimeString() + ".";
+  $("view-time").textContent = "Reported at " + new Date(1000 * answer.view.time).toLocaleTimeString() + ".";
   $("figures").dataset.time = answer.view.time;
   fill($("figures"), ["figure", ...processes.map((one) => one.role + "-" + one.id)],
     names.map((name) => row([Object.assign(cell(name, "th"), { scope: "row" }),
@@ -204,10 +204,10 @@ function showEpisode(answer) {
   const of = episode.checkpoint + " (" + number(episode.env_steps) + " env steps, " +
     number(episode.updates) + " updates), episode " + episode.seed;
   $("episode-text").textContent = {
-    none: "Its input, pixel by pixel, beside a larger view.",
-    playing: "Playing with " + of + " …",
-    ready: "With " + of + ".",
-    failed: "With " + of + ": " + episode.problem,
+    none: "The film shows the policy's input, pixel by pixel, beside a larger view.",
+    playing: "An episode is being played with " + of + " …",
+    ready: "Played with " + of + ".",
+    failed: "Not played with " + of + ": " + episode.problem,
   }[episode.state];
   if (episode.film && episode.state === "ready" && episodeOf !== of) {
     episodeOf = of;
