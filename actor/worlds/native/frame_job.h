@@ -86,19 +86,30 @@ struct LightColour {
 
 enum NormalKind : int32_t { kFlat, kRound, kRod, kOval, kMeshNormals };
 
+// A texel, r | g << 8 | b << 16, and the one below it. Two neighbours in a row are the four texels
+// between which a look-up interpolates: one load of 16 bytes.
+struct TexelPair {
+  int32_t upper, lower;
+};
+
 // A texture in memory. A level has the faces of a cube (+x, -x, +y, -y, +z, -z)
-// one after another. Texels are r | g << 8 | b << 16, rows from t = 0. Each
-// face has a border of one texel, so it has (height + 2, width + 2) texels. The
+// one after another, rows from t = 0. Each face has a border of one texel,
+// so it has (height + 2, width + 2) texels in (height + 1, width + 2) pairs. The
 // border repeats the edge of a cube's face, and the opposite edge of another
 // texture.
 struct Texture {
   int levels;
   bool cube;
-  const int32_t* level[kMostLevels];
+  const TexelPair* level[kMostLevels];
   int width[kMostLevels], height[kMostLevels];
 };
 
 enum TextureMapping : int32_t { kNoTexture, kMap2d, kMapCube };
+
+// Light at a vertex of a grid and at the next one along the plane's y.
+struct LightPair {
+  float upper, lower;
+};
 
 // Grid of a plane; light is computed at its vertices. Axes k = 0, 1 are the plane's x and y.
 struct PlaneGrid {
@@ -108,7 +119,7 @@ struct PlaneGrid {
   int stride;                                // vertices in a row, a multiple of kTilePixels
   const float* x;                            // (stride) positions of vertices
   const float* y;                            // (cells[1] + 1)
-  float* light[3];                           // (cells[1] + 1, stride); written on demand
+  LightPair* light[3];                       // (cells[1] + 1, stride); written on demand
   uint32_t* stamps;  // (cells[1] + 1, stride / kTilePixels): frame that lit the block
 };
 
@@ -129,7 +140,8 @@ struct Surface {
   float gram[9];  // kOval: normal = gram * (p - centre)
   float turn[2];  // kFlat: normal x and y / distance of the plane from the eye
   float emission[3];
-  bool one_light;  // light is the same everywhere: `light`
+  bool one_light;       // light is the same everywhere: `light`
+  bool one_dull_light;  // a plane's light is the same wherever it does not shine
   float light[3];
   LightColour* colours;  // (lights)
   bool specular;
@@ -195,7 +207,7 @@ struct LightSet {
 struct Kernels {
   const char* name;
   int lanes;
-  // Removes depth and id of all pixels.
+  // Removes depth and id of all pixels, and the colour unless it is null.
   void (*clear)(const View&, const Tiles&);
   // Writes depth and id of the pixels where the shape is nearer than the stored depth.
   void (*see)(const View&, const Shape&, const Tiles&);
@@ -211,6 +223,8 @@ struct Kernels {
   // Writes colour and depth of the sky to the pixels beyond the sky's cylinder, then blends the
   // haze. Needs view.sky.
   void (*haze)(const View&, const Haze&, const Tiles&);
+  // Writes colours to planes (3, H, W) of bytes, row 0 = top.
+  void (*write)(const View&, const int32_t* colours, uint8_t* planes);
 };
 
 extern const Kernels kSse2Kernels, kAvx2Kernels, kAvx512Kernels;

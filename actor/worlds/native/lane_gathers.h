@@ -6,29 +6,25 @@
 
 namespace {
 
-// at[0], at[1], at[stride] and at[stride + 1].
-template <typename T>
-SHOAL_INLINE __m128 LoadQuad(const T* at, int stride) {
-  const __m128i upper = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(at));
-  const __m128i lower = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(at + stride));
-  return _mm_castsi128_ps(_mm_unpacklo_epi64(upper, lower));
+// The 16 bytes at base + 8 * index.
+SHOAL_INLINE __m128 LoadQuad(const void* base, int32_t index) {
+  return _mm_loadu_ps(
+      reinterpret_cast<const float*>(static_cast<const char*>(base) + int64_t{8} * index));
 }
 
-// The quads at base + index[0], base + index[4], ... side by side.
-template <typename T>
-SHOAL_INLINE F LoadQuads(const T* base, int stride, const int32_t* index) {
-  const __m128 first = LoadQuad(base + index[0], stride);
+// The quads of index[0], index[4], ... side by side.
+SHOAL_INLINE F LoadQuads(const void* base, const int32_t* index) {
+  const __m128 first = LoadQuad(base, index[0]);
 #if SHOAL_LANES == 4
   return {first};
 #else
   const __m256 low =
-      _mm256_insertf128_ps(_mm256_castps128_ps256(first), LoadQuad(base + index[4], stride), 1);
+      _mm256_insertf128_ps(_mm256_castps128_ps256(first), LoadQuad(base, index[4]), 1);
 #if SHOAL_LANES == 8
   return {low};
 #else
-  const __m256 high =
-      _mm256_insertf128_ps(_mm256_castps128_ps256(LoadQuad(base + index[8], stride)),
-                           LoadQuad(base + index[12], stride), 1);
+  const __m256 high = _mm256_insertf128_ps(_mm256_castps128_ps256(LoadQuad(base, index[8])),
+                                           LoadQuad(base, index[12]), 1);
   return {_mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1)};
 #endif
 #endif
@@ -52,20 +48,25 @@ struct Quads {
   F upper_left, upper_right, lower_left, lower_right;
 };
 
-// base[at], base[at + 1], base[at + stride] and base[at + stride + 1] of each lane, as bits of
-// either type. Lanes must hold indices that exist, used or not. Two loads of 64 bits for each lane
-// and a transposition are faster than gather instructions.
-template <typename T>
-SHOAL_INLINE Quads GatherQuads(const T* base, int stride, I at) {
-  static_assert(sizeof(T) == 4);
+// Reads base[at] and base[at + 1] of each lane from rows of pairs (TexelPair, LightPair), as bits
+// of either type. Each pair holds an upper and a lower value. Lanes must hold indices that exist,
+// used or not. A load of 128 bits for each lane and a transposition are faster than gather
+// instructions.
+template <typename Pair>
+SHOAL_INLINE Quads GatherQuads(const Pair* base, I at) {
+  static_assert(sizeof(Pair) == 8);
   alignas(64) int32_t index[kLanes];
   Store(index, at);
-  const F q0 = LoadQuads(base, stride, index), q1 = LoadQuads(base, stride, index + 1);
-  const F q2 = LoadQuads(base, stride, index + 2), q3 = LoadQuads(base, stride, index + 3);
-  const F upper01 = InterleaveLow(q0, q1), upper23 = InterleaveLow(q2, q3);
-  const F lower01 = InterleaveHigh(q0, q1), lower23 = InterleaveHigh(q2, q3);
-  return {FirstHalves(upper01, upper23), SecondHalves(upper01, upper23),
-          FirstHalves(lower01, lower23), SecondHalves(lower01, lower23)};
+  // Otherwise the compiler takes the vector apart lane by lane, which costs more than loads.
+  asm("" : "+m"(index));
+  const F q0 = LoadQuads(base, index), q1 = LoadQuads(base, index + 1);
+  const F q2 = LoadQuads(base, index + 2), q3 = LoadQuads(base, index + 3);
+  const F left01 = InterleaveLow(q0, q1), left23 = InterleaveLow(q2, q3);
+  const F right01 = InterleaveHigh(q0, q1), right23 = InterleaveHigh(q2, q3);
+  return {.upper_left = FirstHalves(left01, left23),
+          .upper_right = FirstHalves(right01, right23),
+          .lower_left = SecondHalves(left01, left23),
+          .lower_right = SecondHalves(right01, right23)};
 }
 
 }  // namespace

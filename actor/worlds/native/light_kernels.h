@@ -90,6 +90,7 @@ SHOAL_INLINE Colour LightAt(const LightSet& lights, const Surface& s, Vector p, 
     sum[c] = Set(s.emission[c]);
     limited[c] = zero;
   }
+  const F eye_cosine = s.specular ? Dot(n, to_eye) : zero;
   for (int i = 0; i < lights.count; ++i) {
     const Light& light = lights.light[i];
     const LightColour& colour = s.colours[i];
@@ -109,7 +110,7 @@ SHOAL_INLINE Colour LightAt(const LightSet& lights, const Surface& s, Vector p, 
     }
     if (s.specular && light.specular && Any(lit)) {
       // The half vector between light and eye, (l + e) / |l + e|.
-      const F half = facing + Dot(n, to_eye);
+      const F half = facing + eye_cosine;
       const F length = Set(2.0f) + Set(2.0f) * Dot(from.to_light, to_eye);
       const F squared = half * half / Max(length, Set(1e-12f));
       const M shines = lit & (half > zero) & (squared >= Set(s.least_shine));
@@ -124,6 +125,44 @@ SHOAL_INLINE Colour LightAt(const LightSet& lights, const Surface& s, Vector p, 
   }
   for (int c = 0; c < kChannels; ++c) limited[c] = limited[c] + Min(sum[c], one);
   return {limited[0], limited[kGrey ? 0 : 1], limited[kGrey ? 0 : 2]};
+}
+
+// The light of a plane under directional lights: the same everywhere but where it shines.
+struct FaceLight {
+  Colour dull;
+  int shining;  // lights that may make it shine
+  const Light* light[kMostLights];
+  float facing[kMostLights];
+};
+
+SHOAL_INLINE void MakeFaceLight(const LightSet& lights, const Surface& s, FaceLight* face) {
+  Surface dull = s;
+  dull.specular = false;
+  const Vector nowhere{Set(0.0f), Set(0.0f), Set(0.0f)};
+  face->dull = LightAt<false>(lights, dull, nowhere, Set(s.normal), nowhere);
+  face->shining = 0;
+  for (int i = 0; i < lights.count; ++i) {
+    const Light& light = lights.light[i];
+    const float* to = light.direction;
+    const float facing = s.normal[0] * to[0] + s.normal[1] * to[1] + s.normal[2] * to[2];
+    if (!light.specular || !(facing > 0)) continue;
+    face->light[face->shining] = &light;
+    face->facing[face->shining++] = facing;
+  }
+}
+
+// False: LightAt gives `face.dull` in all lanes of `lanes`. Cheaper than LightAt, and true of few
+// lanes that do not shine: the margin is far above what rounding makes of least_shine.
+SHOAL_INLINE bool MayShine(const Surface& s, const FaceLight& face, M lanes, Vector to_eye) {
+  const F zero = Set(0.0f), least = Set(s.least_shine * 0.9999f);
+  const F eye_cosine = Dot(Set(s.normal), to_eye);
+  M shines = zero > zero;
+  for (int i = 0; i < face.shining; ++i) {
+    const F half = Set(face.facing[i]) + eye_cosine;
+    const F length = Set(2.0f) + Set(2.0f) * Dot(Set(face.light[i]->direction), to_eye);
+    shines = shines | ((half > zero) & (half * half >= least * Max(length, Set(1e-12f))));
+  }
+  return Any(shines & lanes);
 }
 
 SHOAL_INLINE F EvalAxes(const float* axes, Vector p) {

@@ -25,7 +25,8 @@ class PlaneGrids {
  private:
   struct Grid {
     PlaneGrid view{};
-    std::vector<float> x, y, light;
+    std::vector<float> x, y;
+    std::vector<LightPair> light;
     std::vector<uint32_t> stamps;
   };
 

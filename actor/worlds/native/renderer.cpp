@@ -227,8 +227,8 @@ void Renderer::State::ShadeAll(const SceneLights& lights) {
 }
 
 void Renderer::State::Clear() {
-  kernels.clear(view, picture.tiles());
-  if (view.sky == nullptr) return;
+  Tiles tiles = picture.tiles();
+  if (view.sky == nullptr) return kernels.clear(view, tiles);
   // The sky depends only on the camera's orientation and the view's size.
   wanted_sky.clear();
   for (const auto& row : view.sky_axes) {
@@ -242,8 +242,10 @@ void Renderer::State::Clear() {
   if (!keep_layers || wanted_sky != sky_key) {
     sky_key = wanted_sky;
     sky_picture.clear();
-    return;
+    return kernels.clear(view, tiles);
   }
+  tiles.colour = nullptr;  // the sky's colours are written next
+  kernels.clear(view, tiles);
   if (sky_picture.empty()) {
     kernels.sky(view, picture.tiles());
     sky_picture = picture.colours();
@@ -338,7 +340,7 @@ void Renderer::Draw(const mjvScene& scene, int width, int height, std::span<uint
   state.DrawOpaque(scene, lights);
   state.DrawHaze(scene);
   state.DrawTransparent(scene, lights);
-  WritePlanes(state.view, state.picture.tiles().colour, planes);
+  WritePlanes(state.kernels, state.view, state.picture.tiles().colour, planes);
 }
 
 void Renderer::State::SeeEverything(const mjvScene& scene, int width, int height) {

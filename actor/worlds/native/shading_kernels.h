@@ -88,9 +88,25 @@ struct Group {
   I triangle;
 };
 
+// Results that later groups of the same surface use.
+struct Passed {
+  FaceLight face;  // if the surface has one_dull_light
+  LitCells lit;    // if it has a grid
+  int level = 0;   // of its texture
+};
+
+SHOAL_INLINE Colour LightOf(const LightSet& lights, const Surface& s, const Group& g, Vector p,
+                            Vector n, Vector ray, Passed* passed) {
+  if (s.one_light) return {Set(s.light[0]), Set(s.light[1]), Set(s.light[2])};
+  if (s.grid != nullptr) return GridLight(lights, s, g.mine, p, &passed->lit);
+  const Vector to_eye = Scale(Set(0.0f) - g.inverse_length, ray);
+  if (s.one_dull_light && !MayShine(s, passed->face, g.mine, to_eye)) return passed->face.dull;
+  return LightAt<false>(lights, s, p, n, to_eye);
+}
+
 template <bool kMesh>
 SHOAL_INLINE I ShadeGroup(const View& view, const LightSet& lights, const Surface& s,
-                          const Group& g) {
+                          const Group& g, Passed* passed) {
   const F depth = Set(1.0f) / Select(g.mine, g.w, Set(1.0f));
   const Vector ray{g.x, g.y, Set(1.0f)};
   const Vector p = Scale(depth, ray);
@@ -102,12 +118,7 @@ SHOAL_INLINE I ShadeGroup(const View& view, const LightSet& lights, const Surfac
   } else {
     n = NormalOf(s, p);
   }
-  Colour colour{Set(s.light[0]), Set(s.light[1]), Set(s.light[2])};
-  if (!s.one_light) {
-    colour = s.grid != nullptr
-                 ? GridLight(lights, s, g.mine, p)
-                 : LightAt<false>(lights, s, p, n, Scale(Set(0.0f) - g.inverse_length, ray));
-  }
+  Colour colour = LightOf(lights, s, g, p, n, ray, passed);
   if (s.mapping != kNoTexture) {
     Footprint f;
     if constexpr (kMesh) {
@@ -118,8 +129,10 @@ SHOAL_INLINE I ShadeGroup(const View& view, const LightSet& lights, const Surfac
       TurnOf(s, n, ray, depth, &turn_x, &turn_y);
       f = FootprintOf(view, s, ray, p, turn_x, turn_y, depth);
     }
-    const Colour texel =
-        s.mapping == kMap2d ? LookUp2d(*s.texture, g.mine, f) : LookUpCube(*s.texture, g.mine, f);
+    int* likely = &passed->level;
+    const Colour texel = s.mapping == kMap2d
+                             ? LookUp2d(*s.texture, g.mine, f, likely)
+                             : LookUpCube</*kTogether=*/false>(*s.texture, g.mine, f, likely);
     colour = {colour.r * texel.r, colour.g * texel.g, colour.b * texel.b};
   }
   return Pack(colour);
@@ -130,7 +143,10 @@ SHOAL_INLINE void ShadeRect(const View& view, const LightSet& lights, const Surf
                             const Tiles& tiles) {
   const bool uniform = s.one_light && s.mapping == kNoTexture;
   const I colour = Pack({Set(s.light[0]), Set(s.light[1]), Set(s.light[2])});
+  Passed passed;
+  if (s.one_dull_light) MakeFaceLight(lights, s, &passed.face);
   for (int row = s.rect.top; row < s.rect.bottom; ++row) {
+    passed.lit = {};  // far and near rows see other cells
     for (int column = s.rect.left; column < s.rect.right; ++column) {
       const int64_t tile = (int64_t{row} * view.tiles_x + column) * kTilePixels;
       for (int i = 0; i < kTilePixels; i += kLanes) {
@@ -145,7 +161,7 @@ SHOAL_INLINE void ShadeRect(const View& view, const LightSet& lights, const Surf
                       Load(view.inverse_length + tile + i),
                       Set(int32_t{0})};
           if constexpr (kMesh) group.triangle = Load(tiles.triangle + tile + i);
-          shaded = ShadeGroup<kMesh>(view, lights, s, group);
+          shaded = ShadeGroup<kMesh>(view, lights, s, group, &passed);
         }
         Store(tiles.colour + tile + i, Select(mine, shaded, Load(tiles.colour + tile + i)));
       }

@@ -15,8 +15,8 @@ SHOAL_INLINE F AlongRay(const float* axis, F x, F y) {
   return Set(axis[0]) * x + Set(axis[1]) * y + Set(axis[2]);
 }
 
-// The sky is a cube around the eye; its texture is not lit.
-SHOAL_INLINE I SkyColour(const View& view, M lanes, F x, F y) {
+// The sky is a cube around the eye; its texture is not lit. `likely`: see SampleLevels.
+SHOAL_INLINE I SkyColour(const View& view, M lanes, F x, F y, int* likely) {
   const float(*axes)[3] = view.sky_axes;
   const F pixel = Set(view.pixel);
   const auto at = [&](int k) { return AlongRay(axes[k], x, y); };
@@ -24,7 +24,7 @@ SHOAL_INLINE I SkyColour(const View& view, M lanes, F x, F y) {
   const auto down = [&](int k) { return Set(axes[k][1]) * pixel; };
   const Footprint f{
       {at(0), at(1), at(2)}, {right(0), right(1), right(2)}, {down(0), down(1), down(2)}};
-  return Pack(LookUpCube(*view.sky, lanes, f));
+  return Pack(LookUpCube</*kTogether=*/true>(*view.sky, lanes, f, likely));
 }
 
 // Calls visit(x, y, at) for each group of lanes, with the group's rays and index in the tiles.
@@ -42,10 +42,12 @@ SHOAL_INLINE void ForEachRay(const View& view, const Visit& visit) {
 }
 
 void Sky(const View& view, const Tiles& tiles) {
+  int level = 0;
   ForEachRay(view, [&](F x, F y, int64_t at) {
     const M bare = Load(tiles.id + at) == Set(int32_t{kNothing});
     if (!Any(bare)) return;
-    Store(tiles.colour + at, Select(bare, SkyColour(view, bare, x, y), Load(tiles.colour + at)));
+    const I sky = SkyColour(view, bare, x, y, &level);
+    Store(tiles.colour + at, Select(bare, sky, Load(tiles.colour + at)));
   });
 }
 
@@ -75,12 +77,13 @@ SHOAL_INLINE F HazeShare(const Haze& haze, F x, F y, F w) {
 void DrawHaze(const View& view, const Haze& haze, const Tiles& tiles) {
   const F half = Set(0.5f);
   const I byte = Set(int32_t{255});
+  int level = 0;
   ForEachRay(view, [&](F x, F y, int64_t at) {
     const F w = Load(tiles.w + at);
     I colour = Load(tiles.colour + at);
     const F sky = SkyDepth(view, haze, x, y);
     const M beyond = (Load(tiles.id + at) > Set(int32_t{kNothing})) & (sky > w);
-    if (Any(beyond)) colour = Select(beyond, SkyColour(view, beyond, x, y), colour);
+    if (Any(beyond)) colour = Select(beyond, SkyColour(view, beyond, x, y, &level), colour);
     Store(tiles.colour + at, colour);
     Store(tiles.w + at, Max(w, sky));
     if (!haze.seen) return;

@@ -206,8 +206,11 @@ void SetRoundNormals(const mjvGeom& geom, const PlacedGeom& placed, Surface* s) 
 }  // namespace
 
 SceneLights::SceneLights(const mjvScene& scene, const CameraFrame& frame) {
+  const int count = std::min(scene.nlight, mjMAXLIGHT);
+  lights_.reserve(static_cast<size_t>(count));
+  plain_.reserve(static_cast<size_t>(count));
   for (const bool casts : {false, true}) {
-    for (int i = 0; i < std::min(scene.nlight, mjMAXLIGHT); ++i) {
+    for (int i = 0; i < count; ++i) {
       const mjvLight& from = scene.lights[i];
       if ((from.castshadow != 0) != casts) continue;
       Light light = MakeLight(from, frame);
@@ -262,6 +265,9 @@ void AddSurfaces(const mjvGeom& geom, const PlacedGeom& placed, const Shape& sha
     s.one_light = !shines && all_directional;
     if (s.one_light) LightFace(*sources.lights, colours, &s);
     if (geom.type == mjGEOM_PLANE && !s.one_light) SetGrid(geom, placed, sources, &s);
+    // Planes alone are large enough to gain from it. A shine without a least value is everywhere.
+    s.one_dull_light = geom.type == mjGEOM_PLANE && shines && all_directional &&
+                       s.grid == nullptr && s.least_shine > 0;
     surfaces->push_back(s);
   };
   if (geom.type == mjGEOM_PLANE) return add_flat(0, placed.axes[2]);

@@ -49,40 +49,43 @@ SHOAL_INLINE Texels Mix(Texels a, Texels b, I weight) {
 }
 
 // Interpolates between the four texels whose upper left one is at `upper_left`.
-SHOAL_INLINE Texels Bilinear(const int32_t* texels, int stride, I upper_left, F fx, F fy) {
+SHOAL_INLINE Texels Bilinear(const TexelPair* texels, I upper_left, F fx, F fy) {
   const I wx = Weight16(fx), wy = Weight16(fy);
-  const Quads quads = GatherQuads(texels, stride, upper_left);
+  const Quads quads = GatherQuads(texels, upper_left);
   const Texels top = Mix(Split(Bits(quads.upper_left)), Split(Bits(quads.upper_right)), wx);
   return Mix(top, Mix(Split(Bits(quads.lower_left)), Split(Bits(quads.lower_right)), wx), wy);
 }
 
 SHOAL_INLINE I Times(I a, int b) { return a * Set(int32_t{b}); }
 
-// s and t repeat. Rows begin with their last texel and end with their first.
+// The place in a texture that repeats, in [0, 1).
+SHOAL_INLINE F Repeated(F at) {
+  const F limit = Set(1e6f);
+  const F limited = Max(Min(at, limit), Set(0.0f) - limit);
+  return Min(limited - ToFloat(Floor(limited)), Set(0.99999994f));
+}
+
+// s and t are in [0, 1). Rows begin with their last texel and end with their first.
 SHOAL_INLINE Texels Sample2d(const Texture& texture, int level, F s, F t) {
   const int width = texture.width[level], height = texture.height[level];
-  const auto scaled = [](F at, int size) {
-    const F turns = at - ToFloat(Floor(at));
-    return Min(turns, Set(0.99999994f)) * Set(static_cast<float>(size)) + Set(0.5f);
-  };
-  const F x = scaled(s, width), y = scaled(t, height);
+  const F x = s * Set(static_cast<float>(width)) + Set(0.5f);
+  const F y = t * Set(static_cast<float>(height)) + Set(0.5f);
   const I column = Truncate(x), row = Truncate(y);
-  const int stride = width + 2;
-  return Bilinear(texture.level[level], stride, Times(row, stride) + column, x - ToFloat(column),
+  return Bilinear(texture.level[level], Times(row, width + 2) + column, x - ToFloat(column),
                   y - ToFloat(row));
 }
 
 // Samples a face of a cube at u and v in [0, 1], clamped to the face's edges: each face has a frame
 // that repeats its own edges.
 SHOAL_INLINE Texels SampleCube(const Texture& texture, int level, I face, F u, F v) {
-  const int size = texture.width[level], stride = size + 2;
+  const int size = texture.width[level];
   const auto scaled = [size](F at) {
     return Min(Max(at, Set(0.0f)), Set(1.0f)) * Set(static_cast<float>(size)) + Set(0.5f);
   };
   const F x = scaled(u), y = scaled(v);
   const I column = Min(Truncate(x), Set(int32_t{size})), row = Min(Truncate(y), Set(int32_t{size}));
-  const I upper_left = Times(Times(face, stride) + row, stride) + column;
-  return Bilinear(texture.level[level], stride, upper_left, x - ToFloat(column), y - ToFloat(row));
+  const I upper_left = Times(Times(face, size + 1) + row, size + 2) + column;
+  return Bilinear(texture.level[level], upper_left, x - ToFloat(column), y - ToFloat(row));
 }
 
 // Level and weight of the next one for a footprint of `rho` texels, as llvmpipe
@@ -98,30 +101,44 @@ SHOAL_INLINE void ChooseLevel(F rho, int levels, I* level, F* weight) {
 }
 
 // Samples the lanes of `lanes` at their own levels; other lanes get undefined values. Lanes of one
-// group rarely differ in their level.
+// group, and neighbouring groups, rarely differ in their level: `likely`, a level of the texture,
+// is tried first, so that its addresses need not wait for the lanes' own. It becomes one of theirs.
 template <typename Sample>
-SHOAL_INLINE Colour SampleLevels(M lanes, I level, F weight, const Sample& sample) {
-  alignas(64) int32_t levels[kLanes];
-  Store(levels, level);
+SHOAL_INLINE Colour SampleLevels(M lanes, I level, F weight, const Sample& sample, int* likely) {
+  const M mixed = weight > Set(0.0f);
   Texels texels{Set(int32_t{0}), Set(int32_t{0})};
+  Texels fine = texels, coarse = texels;   // samples of two levels, which the next pass may need
+  int fine_level = -1, coarse_level = -1;  // none
+  int here = *likely;
   M left = lanes;
-  while (Any(left)) {
-    const int here = levels[FirstLane(left)];
+  while (true) {
     const M same = left & (level == Set(int32_t{here}));
-    Texels found = sample(here);
-    if (Any(same & (weight > Set(0.0f)))) {
-      found = Mix(found, sample(here + 1), Weight16(weight));
+    if (Any(same)) {
+      const Texels nearest = here == coarse_level ? coarse : sample(here);
+      Texels found = nearest;
+      if (Any(same & mixed)) {
+        coarse = here + 1 == fine_level ? fine : sample(here + 1);
+        coarse_level = here + 1;
+        found = Mix(nearest, coarse, Weight16(weight));
+      }
+      fine = nearest;
+      fine_level = here;
+      texels.red_blue = Select(same, found.red_blue, texels.red_blue);
+      texels.green = Select(same, found.green, texels.green);
+      left = Without(left, same);
     }
-    texels.red_blue = Select(same, found.red_blue, texels.red_blue);
-    texels.green = Select(same, found.green, texels.green);
-    left = Without(left, same);
+    if (!Any(left)) break;
+    alignas(64) int32_t levels[kLanes];
+    Store(levels, level);
+    here = levels[FirstLane(left)];
   }
+  *likely = here;
   const F unit = Set(1.0f / 255);
   return {ToFloat(texels.red_blue & Set(int32_t{255})) * unit, ToFloat(texels.green) * unit,
           ToFloat(ShiftRight<16>(texels.red_blue)) * unit};
 }
 
-SHOAL_INLINE Colour LookUp2d(const Texture& texture, M lanes, const Footprint& f) {
+SHOAL_INLINE Colour LookUp2d(const Texture& texture, M lanes, const Footprint& f, int* likely) {
   const F width = Set(static_cast<float>(texture.width[0]));
   const F height = Set(static_cast<float>(texture.height[0]));
   const F rho =
@@ -129,60 +146,85 @@ SHOAL_INLINE Colour LookUp2d(const Texture& texture, M lanes, const Footprint& f
   I level;
   F weight;
   ChooseLevel(rho, texture.levels, &level, &weight);
-  const F limit = Set(1e6f);
-  const F s = Max(Min(f.at.x, limit), Set(0.0f) - limit);
-  const F t = Max(Min(f.at.y, limit), Set(0.0f) - limit);
+  const F s = Repeated(f.at.x), t = Repeated(f.at.y);
   return SampleLevels(
-      lanes, level, weight, [&](int here) __attribute__((always_inline)) {
-        return Sample2d(texture, here, s, t);
-      });
+      lanes, level, weight,
+      [&](int here) __attribute__((always_inline)) { return Sample2d(texture, here, s, t); },
+      likely);
 }
 
-// The face that a direction meets and the axes on the face: u = right / major, v = down / major,
-// with OpenGL's orientation of the faces.
+// The axis of the face of a cube that directions meet: one for all lanes, or each lane's own.
+enum FaceAxis { kFaceX, kFaceY, kFaceZ, kFaceOfLane };
+
 struct CubeAxes {
-  M x, y;  // the major axis; neither = z
-  F sign_u, sign_v;
+  M x, y;  // neither = z
 };
 
+template <FaceAxis kAxis>
 SHOAL_INLINE F Along(const CubeAxes& axes, F x, F y, F z) {
+  if constexpr (kAxis == kFaceX) return x;
+  if constexpr (kAxis == kFaceY) return y;
+  if constexpr (kAxis == kFaceZ) return z;
   return Select(axes.x, x, Select(axes.y, y, z));
 }
 
-SHOAL_INLINE Colour LookUpCube(const Texture& texture, M lanes, const Footprint& f) {
-  const F ax = Abs(f.at.x), ay = Abs(f.at.y), az = Abs(f.at.z);
+struct CubePoint {
+  I face;
+  F u, v;   // in [-1, 1]: right / major and down / major, with OpenGL's orientation of the faces
+  F slope;  // of u and v from pixel to pixel
+};
+
+template <FaceAxis kAxis>
+SHOAL_INLINE CubePoint PointOnCube(const CubeAxes& axes, const Footprint& f) {
   const F zero = Set(0.0f), one = Set(1.0f), minus = Set(-1.0f);
-  CubeAxes axes;
-  axes.x = (ax >= ay) & (ax >= az);
-  axes.y = Without(ay >= az, axes.x);
-  const F major = Along(axes, f.at.x, f.at.y, f.at.z);
+  const auto along = [&](F x, F y, F z) { return Along<kAxis>(axes, x, y, z); };
+  const F major = along(f.at.x, f.at.y, f.at.z);
   const F sign = Select(major >= zero, one, minus);
   // +x: (-z, -y), -x: (z, -y), +y: (x, z), -y: (x, -z), +z: (x, -y), -z: (-x,
   // -y)
-  axes.sign_u = Along(axes, zero - sign, one, sign);
-  axes.sign_v = Along(axes, minus, sign, minus);
-  const auto u_of = [&](const Vector& v) { return axes.sign_u * Along(axes, v.z, v.x, v.x); };
-  const auto v_of = [&](const Vector& v) { return axes.sign_v * Along(axes, v.y, v.z, v.y); };
-  const auto m_of = [&](const Vector& v) { return sign * Along(axes, v.x, v.y, v.z); };
+  const F sign_u = along(zero - sign, one, sign), sign_v = along(minus, sign, minus);
+  const auto u_of = [&](const Vector& v) { return sign_u * along(v.z, v.x, v.x); };
+  const auto v_of = [&](const Vector& v) { return sign_v * along(v.y, v.z, v.y); };
+  const auto m_of = [&](const Vector& v) { return sign * along(v.x, v.y, v.z); };
   const F inverse = one / Max(Abs(major), Set(1e-20f));
   const F u = u_of(f.at) * inverse, v = v_of(f.at) * inverse;
   const auto slope = [&](const Vector& d) {
     const F m = m_of(d);
     return Max(Abs((u_of(d) - u * m) * inverse), Abs((v_of(d) - v * m) * inverse));
   };
+  const F first = along(Set(0.0f), Set(2.0f), Set(4.0f));
+  return {Truncate(first + Select(zero > major, one, zero)), u, v,
+          Max(slope(f.right), slope(f.down))};
+}
+
+// kTogether: the lanes likely meet one face.
+template <bool kTogether>
+SHOAL_INLINE Colour LookUpCube(const Texture& texture, M lanes, const Footprint& f, int* likely) {
+  const F ax = Abs(f.at.x), ay = Abs(f.at.y), az = Abs(f.at.z);
+  CubeAxes axes;
+  axes.x = (ax >= ay) & (ax >= az);
+  axes.y = Without(ay >= az, axes.x);
+  CubePoint at;
+  if (kTogether && !Any(Without(lanes, axes.y))) {
+    at = PointOnCube<kFaceY>(axes, f);
+  } else if (kTogether && !Any(Without(lanes, axes.x))) {
+    at = PointOnCube<kFaceX>(axes, f);
+  } else if (kTogether && !Any(lanes & (axes.x | axes.y))) {
+    at = PointOnCube<kFaceZ>(axes, f);
+  } else {
+    at = PointOnCube<kFaceOfLane>(axes, f);
+  }
   const F size = Set(0.5f * static_cast<float>(texture.width[0]));
   I level;
   F weight;
-  ChooseLevel(Max(slope(f.right), slope(f.down)) * size, texture.levels, &level, &weight);
-  const I negative = Select(zero > major, Set(int32_t{1}), Set(int32_t{0}));
-  const I face =
-      negative + Select(axes.x, Set(int32_t{0}), Select(axes.y, Set(int32_t{2}), Set(int32_t{4})));
+  ChooseLevel(at.slope * size, texture.levels, &level, &weight);
   const F half = Set(0.5f);
-  const F at_u = u * half + half, at_v = v * half + half;
+  const F u = at.u * half + half, v = at.v * half + half;
   return SampleLevels(
-      lanes, level, weight, [&](int here) __attribute__((always_inline)) {
-        return SampleCube(texture, here, face, at_u, at_v);
-      });
+      lanes, level, weight,
+      [&](int here)
+          __attribute__((always_inline)) { return SampleCube(texture, here, at.face, u, v); },
+      likely);
 }
 
 }  // namespace

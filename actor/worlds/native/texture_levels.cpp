@@ -19,14 +19,14 @@ std::vector<int32_t> Packed(std::span<const uint8_t> rgb) {
   return texels;
 }
 
-struct TexelPair {
+struct Neighbours {
   int first, second;
   float fraction;
 };
 
 // Texel `i` of a side of `to` texels is interpolated between the two of `from` texels whose centres
 // surround it.
-TexelPair PairOf(int i, int to, int from) {
+Neighbours NeighboursOf(int i, int to, int from) {
   const float at =
       (static_cast<float>(i) + 0.5f) * static_cast<float>(from) / static_cast<float>(to) - 0.5f;
   const int first = std::clamp(static_cast<int>(at), 0, from - 1);
@@ -38,9 +38,9 @@ TexelPair PairOf(int i, int to, int from) {
 void Halve(std::span<const int32_t> from, int width, int height, int half_width, int half_height,
            int32_t* to) {
   for (int y = 0; y < half_height; ++y) {
-    const TexelPair row = PairOf(y, half_height, height);
+    const Neighbours row = NeighboursOf(y, half_height, height);
     for (int x = 0; x < half_width; ++x) {
-      const TexelPair column = PairOf(x, half_width, width);
+      const Neighbours column = NeighboursOf(x, half_width, width);
       int32_t mixed = 0;
       for (int shift = 0; shift < 24; shift += 8) {
         const auto channel = [&](int r, int c) {
@@ -97,18 +97,22 @@ TextureLevels::TextureLevels(std::span<const uint8_t> rgb, int width, int height
 
 void TextureLevels::AddLevel(std::span<const int32_t> texels, int width, int height) {
   const auto columns = static_cast<size_t>(width), rows = static_cast<size_t>(height);
-  std::vector<int32_t> framed;
-  framed.reserve(texels.size() / (rows * columns) * (rows + 2) * (columns + 2));
+  std::vector<TexelPair> framed;
+  framed.reserve(texels.size() / (rows * columns) * (rows + 1) * (columns + 2));
+  std::vector<int32_t> upper(columns + 2), lower(columns + 2);  // rows of a framed face
   for (size_t face = 0; face < texels.size(); face += rows * columns) {
-    const auto add_row = [&](size_t y) {
+    const auto fill = [&](size_t y, std::vector<int32_t>* to) {
       const std::span<const int32_t> row = texels.subspan(face + y * columns, columns);
-      framed.push_back(view_.cube ? row.front() : row.back());
-      framed.insert(framed.end(), row.begin(), row.end());
-      framed.push_back(view_.cube ? row.back() : row.front());
+      to->front() = view_.cube ? row.front() : row.back();
+      std::copy(row.begin(), row.end(), to->begin() + 1);
+      to->back() = view_.cube ? row.back() : row.front();
     };
-    add_row(view_.cube ? 0 : rows - 1);
-    for (size_t y = 0; y < rows; ++y) add_row(y);
-    add_row(view_.cube ? rows - 1 : 0);
+    fill(view_.cube ? 0 : rows - 1, &upper);
+    for (size_t y = 0; y <= rows; ++y) {
+      fill(y < rows ? y : view_.cube ? rows - 1 : 0, &lower);
+      for (size_t x = 0; x < columns + 2; ++x) framed.push_back({upper[x], lower[x]});
+      upper.swap(lower);
+    }
   }
   texels_.push_back(std::move(framed));
   view_.level[view_.levels] = texels_.back().data();

@@ -24,7 +24,7 @@ class TextureLevels {
  private:
   void AddLevel(std::span<const int32_t> texels, int width, int height);
 
-  std::vector<std::vector<int32_t>> texels_;
+  std::vector<std::vector<TexelPair>> texels_;
   Texture view_{};
 };
 

@@ -25,7 +25,8 @@ class TileBuffer {
 };
 
 // planes (3, H, W), row 0 = top.
-void WritePlanes(const View& view, const int32_t* colours, std::span<uint8_t> planes);
+void WritePlanes(const Kernels& kernels, const View& view, const int32_t* colours,
+                 std::span<uint8_t> planes);
 
 // Values of pixels in the order of rows, (H, W).
 template <typename Value, typename Read>

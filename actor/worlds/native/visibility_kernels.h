@@ -93,14 +93,22 @@ SHOAL_INLINE Hit SeeFaces(const Shape& s, F x, F y) {
     hit = hit & (w >= leave);
   }
   for (int i = 0; i < s.leaves; ++i) hit = hit & (w >= Eval(s.leave[i], x, y));
-  for (int i = 0; i < s.insides; ++i) hit = hit & (Eval(s.inside[i], x, y) >= Set(0.0f));
   return {hit, w, id};
+}
+
+// SeeFaces of the only face that a plane has.
+SHOAL_INLINE Hit SeePlane(const Shape& s, F x, F y) {
+  const F w = Min(Eval(s.enter[0], x, y), Set(kNever));
+  M hit = w > Set(0.0f);
+  for (int i = 0; i < s.insides; ++i) hit = hit & (Eval(s.inside[i], x, y) >= Set(0.0f));
+  return {hit, w, Set(s.id)};
 }
 
 template <ShapeKind kKind>
 SHOAL_INLINE Hit SeeOne(const Shape& s, F x, F y) {
   if constexpr (kKind == kEllipsoid) return SeeEllipsoid(s, x, y);
   if constexpr (kKind == kCapsule) return SeeCapsule(s, x, y);
+  if constexpr (kKind == kPlane) return SeePlane(s, x, y);
   return SeeFaces(s, x, y);
 }
 
@@ -179,8 +187,9 @@ void SeeKind(const View& view, const Shape& s, const Tiles& behind, const Tiles&
       return SeeShape<kCapsule, kOver>(view, s, behind, tiles);
     case kCylinder:
     case kBox:
-    case kPlane:
       return SeeShape<kBox, kOver>(view, s, behind, tiles);
+    case kPlane:
+      return SeeShape<kPlane, kOver>(view, s, behind, tiles);
     case kTriangles:
       return SeeTriangles<kOver>(view, s, behind, tiles);
   }
@@ -208,7 +217,7 @@ void Clear(const View& view, const Tiles& tiles) {
   for (int64_t i = 0; i < pixels; i += kLanes) {
     Store(tiles.w + i, Set(0.0f));
     Store(tiles.id + i, Set(int32_t{kNothing}));
-    Store(tiles.colour + i, Set(int32_t{0}));
+    if (tiles.colour != nullptr) Store(tiles.colour + i, Set(int32_t{0}));
   }
 }
 

@@ -216,6 +216,35 @@ TEST_F(RendererTest, AllInstructionSetsDrawTheSameBits) {
   }
 }
 
+// Planes under directional lights are lit once and then only where they shine. With a lamp that is
+// not directional each pixel is lit, here by a lamp without light.
+TEST_F(RendererTest, PlanesAreLitOnceAsEachPixelIs) {
+  Random random(5);
+  for (int scene = 0; scene < 40; ++scene) {
+    hand_.geoms().clear();
+    AddRandomGeoms(30, 100 + static_cast<uint64_t>(scene));
+    std::erase_if(hand_.geoms(), [](const mjvGeom& geom) {
+      return geom.type != mjGEOM_BOX && geom.type != mjGEOM_PLANE;
+    });
+    for (mjvGeom& geom : hand_.geoms()) geom.shininess = 0.12f + 0.88f * geom.shininess;
+    mjvScene& made = hand_.scene();
+    made.nlight = 3;
+    for (int i = 1; i < 3; ++i) {
+      made.lights[i] = made.lights[0];
+      made.lights[i].headlight = 0;
+      made.lights[i].castshadow = i == 2;
+      for (float& v : made.lights[i].dir) v = static_cast<float>(random.Uniform(-1, 1));
+    }
+    mjvLight& dark = made.lights[3];
+    dark = {};
+    dark.attenuation[0] = 1;
+    dark.cutoff = 45;
+    const std::vector<uint8_t> at_once = Draw();
+    made.nlight = 4;
+    ASSERT_EQ(Draw(), at_once) << "scene " << scene;
+  }
+}
+
 // Frames as they were drawn when the test was written; other bits are another quality `native`.
 TEST_F(RendererTest, FramesAreTheRecordedOnes) {
   const auto hash = [](const std::vector<uint8_t>& frame) {

@@ -24,6 +24,21 @@ TEST_F(StaticLayersTest, OnlyASecondMissIsWorthALayer) {
   EXPECT_TRUE(layers_.Miss({1, 2}));
 }
 
+// A camera that moves a little in each frame makes no layers: keys differ in any one word.
+TEST_F(StaticLayersTest, KeysThatDifferInOneWordAreNotMistaken) {
+  const StaticLayers::Key key(11, 7);
+  EXPECT_FALSE(layers_.Miss(key));
+  for (size_t word = 0; word < key.size(); ++word) {
+    for (const uint32_t bit : {0u, 15u, 31u}) {
+      StaticLayers::Key other = key;
+      other[word] ^= 1u << bit;
+      EXPECT_FALSE(layers_.Miss(other)) << "word " << word << ", bit " << bit;
+    }
+  }
+  EXPECT_FALSE(layers_.Miss(StaticLayers::Key(10, 7)));
+  EXPECT_TRUE(layers_.Miss(key));
+}
+
 TEST_F(StaticLayersTest, ALayerIsFoundByItsKey) {
   picture_.tiles().colour[5] = 77;
   layers_.Store({1, 2}, picture_, view_);

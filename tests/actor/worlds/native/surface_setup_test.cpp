@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "actor/worlds/native/shape_setup.h"
@@ -95,6 +96,27 @@ TEST_F(SurfaceSetup, DullFacesUnderDirectionalLightHaveOneColour) {
   hand_.scene().lights[1] = {};
   hand_.scene().lights[1].cutoff = 45;
   EXPECT_FALSE(Make()[0].one_light) << "a spot shines on it";
+}
+
+TEST_F(SurfaceSetup, ShinyPlanesUnderDirectionalLightHaveOneDullLight) {
+  mjvGeom& plane = hand_.Add(mjGEOM_PLANE, {4, 0, 0}, {1, 1, 1});
+  const float upright[9] = {0, 0, -1, 0, 1, 0, 1, 0, 0};
+  std::copy(upright, upright + 9, plane.mat);
+  EXPECT_FALSE(Make()[0].one_dull_light) << "it has one light";
+  plane.specular = 0.5f;
+  plane.shininess = 0.5f;
+  EXPECT_TRUE(Make()[0].one_dull_light);
+  plane.shininess = 0.03f;
+  EXPECT_FALSE(Make()[0].one_dull_light) << "it shines everywhere";
+  plane.shininess = 0.5f;
+  hand_.scene().nlight = 2;
+  hand_.scene().lights[1] = {};
+  hand_.scene().lights[1].cutoff = 45;
+  EXPECT_FALSE(Make()[0].one_dull_light) << "a spot shines on it";
+  hand_.scene().nlight = 1;
+  mjvGeom& ball = hand_.Add(mjGEOM_SPHERE, {4, 0, 0}, {1, 1, 1});
+  ball.specular = ball.shininess = 0.5f;
+  EXPECT_FALSE(Make()[0].one_dull_light) << "it is no plane";
 }
 
 // The light of each pass is limited by itself, but what is transparent has one pass.

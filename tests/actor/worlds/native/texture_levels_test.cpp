@@ -14,10 +14,17 @@ std::vector<uint8_t> Filled(size_t texels, uint8_t r, uint8_t g, uint8_t b) {
   return rgb;
 }
 
-// The texel of a level, past the frame of one texel around each face.
+// The texel of a level, past the frame of one texel around each face. A texel in the middle is the
+// upper one of a pair and the lower one of another.
 int32_t At(const Texture& texture, int level, int face, int y, int x) {
-  const int stride = texture.width[level] + 2;
-  return texture.level[level][(face * (texture.height[level] + 2) + y + 1) * stride + x + 1];
+  const int stride = texture.width[level] + 2, height = texture.height[level];
+  const TexelPair* at = texture.level[level] + (face * (height + 1) + y + 1) * stride + x + 1;
+  if (y < 0) return at->upper;
+  const int32_t texel = (at - stride)->lower;
+  if (y < height) {
+    EXPECT_EQ(at->upper, texel) << "face " << face << ", " << y << ", " << x;
+  }
+  return texel;
 }
 
 TEST(TextureLevels, HalveUntilOneTexelIsLeft) {
@@ -76,6 +83,12 @@ TEST(TextureLevels, FramesRepeatTheTextureOrTheCubesEdge) {
   EXPECT_EQ(At(cube.view(), 0, 3, 0, -1), 0);
   EXPECT_EQ(At(cube.view(), 0, 3, -1, 0), 0);
   EXPECT_EQ(At(cube.view(), 0, 3, 2, 2), 3);
+  for (int y = -1; y <= 2; ++y) {
+    for (int x = -1; x <= 2; ++x) {
+      EXPECT_EQ(At(flat.view(), 0, 0, y, x), (y & 1) * 2 + (x & 1));
+      EXPECT_EQ(At(cube.view(), 0, 5, y, x), (y > 0) * 2 + (x > 0));
+    }
+  }
 }
 
 }  // namespace
