@@ -275,8 +275,8 @@ void Supervisor::ExpectExit(std::string_view role) {
     if (!Is(role, child.spec)) continue;
     // The process will not be replaced, so its work stays unfinished.
     if (child.restart_at && !child.spec.expendable) {
-      unclean_exits_.push_back(fmt::format(
-          "{}: died, and is not restarted because the run is stopping", child.spec.Name()));
+      unclean_exits_.push_back(
+          fmt::format("{}: died and is not restarted while stopping", child.spec.Name()));
       say_(unclean_exits_.back());
     }
     child.exit_expected = true;

@@ -97,7 +97,7 @@ TEST_F(SupervisorTest, AProcessThatWaitsForItsRestartWhenTheRunStopsIsAnUncleanE
   ASSERT_TRUE(died("replay-0: exit code 1"));
   supervisor_.ExpectExit("");
   EXPECT_THAT(supervisor_.unclean_exits(),
-              ElementsAre("replay-0: died, and is not restarted because the run is stopping"));
+              ElementsAre("replay-0: died and is not restarted while stopping"));
 }
 
 TEST_F(SupervisorTest, KnowsWhoCouldNotWriteAllOfItsResults) {
