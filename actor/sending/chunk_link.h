@@ -12,8 +12,8 @@ namespace shoal::actor {
 class ChunkLink {
  public:
   virtual ~ChunkLink() = default;
-  // Returns the newest credit of this session, each credit once. Waits for a credit until
-  // `deadline`.
+  // Returns the newest credit of this session if it has not been returned before. Waits for a
+  // credit until `deadline`.
   virtual std::optional<Credit> TakeCredit(SteadyTime deadline) = 0;
   // True if a receiver is connected. Without a receiver, chunks that are sent now are lost.
   virtual bool Connected() = 0;

@@ -27,7 +27,8 @@ class CreditInbox {
     }
   }
 
-  // Returns the newest credit, each credit once. Waits for a credit until `deadline`.
+  // Returns the newest credit if it has not been returned before. Waits for a credit until
+  // `deadline`.
   std::optional<Credit> Take(SteadyTime deadline) {
     const MutexLock lock(mutex_);
     while (!newest_ && arrived_.WaitUntil(mutex_, deadline)) {

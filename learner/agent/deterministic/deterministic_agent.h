@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The common part of TD3 and DDPG: a deterministic actor that the critic's gradient trains, targets
-// of actor and critic, and the update with one batch. Equations are numbered in docs/algorithm.md.
+// The common part of TD3 and DDPG: a deterministic actor, which is trained by the critic's
+// gradient; targets of actor and critic; and the update with one batch. Equations are numbered in
+// docs/algorithm.md.
 //
 //   1. targets   next_obs -> encoder -> target actor, target critic -> y           (Eq. 18, 15)
 //   2. critic    obs -> encoder -> critic -> loss -> encoder and critic step            (Eq. 6)
