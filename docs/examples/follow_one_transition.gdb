@@ -18,7 +18,7 @@ tbreak shoal::replay::BatchGather::Gather
 # The learner receives the batch's place, on a thread of the link.
 tbreak shoal::learner::BatchSource::OnSlot
 # It computes one update of the batch.
-tbreak shoal::learner::TrainingLoop::Update
+tbreak shoal::learner::TrainingLoop::Submit
 # An actor receives the new weights.
 tbreak shoal::actor::WeightsInbox::OnMessage
 

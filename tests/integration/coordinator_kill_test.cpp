@@ -97,7 +97,7 @@ TEST(CoordinatorKill, ARunThatIsInterruptedInsteadIsNotEvaluated) {
   training.Interrupt();
   ASSERT_EQ(training.End(seconds(60)), kInterruptedExit) << training.Output();
   EXPECT_FALSE(std::filesystem::exists(run.path() / "eval/final.json"));
-  EXPECT_NE(training.Output().find("go on with shoal train --resume"), std::string::npos)
+  EXPECT_NE(training.Output().find("continue with shoal train --resume"), std::string::npos)
       << training.Output();
   EXPECT_EQ(run.Json("meta.json").at("exit"), "interrupted");
 }
