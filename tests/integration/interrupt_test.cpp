@@ -159,7 +159,7 @@ TEST_P(StoppedCommand, DiesBySigint) {
 INSTANTIATE_TEST_SUITE_P(
     All, StoppedCommand,
     testing::Values(
-        CommandCase{"Web", {"shoal", "web", "--port", "0"}, "Ctrl-C ends it"},
+        CommandCase{"Web", {"shoal", "web", "--port", "0"}, "Ctrl-C ends the server"},
         CommandCase{"Observability",
                     {"shoal", "env", "observability", "FetchReach", "--tell", "grip", "--samples",
                      "40", "--updates", "100000", "--width", "32", "--height", "32"},

@@ -119,7 +119,7 @@ TEST(Web, TheCommandPrintsTheAddressAndEndsWithASignal) {
   TerminalProgram web({"shoal", "web", "--run-dir", run.parent().string(), "--port", "0"});
   EXPECT_TRUE(web.WaitFor("at http://127.0.0.1:", seconds(30)));
   EXPECT_TRUE(web.WaitFor("/?token=", seconds(30)));
-  EXPECT_TRUE(web.WaitFor("Ctrl-C ends it", seconds(30)));
+  EXPECT_TRUE(web.WaitFor("Ctrl-C ends the server", seconds(30)));
   web.Signal(SIGINT);
   EXPECT_EQ(web.End(seconds(30)), kInterruptedExit);
 }
