@@ -31,7 +31,7 @@ json WaitForAnswer(const PageClient& page, const std::string& path, Done done) {
   PageAnswer answer;
   while (Now() < end) {
     answer = page.Get(path);
-    const json content = json::parse(answer.content, nullptr, /*allow_exceptions=*/false);
+    json content = json::parse(answer.content, nullptr, /*allow_exceptions=*/false);
     if (answer.status == 200 && done(content)) return content;
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }

@@ -53,6 +53,8 @@ void Halve(std::span<const int32_t> from, int width, int height, int half_width,
         };
         const float upper = mix(row.first);
         const float value = upper + row.fraction * (mix(row.second) - upper);
+        // Values are not negative, and all CPUs must round alike.
+        // NOLINTNEXTLINE(bugprone-incorrect-roundings)
         mixed |= static_cast<int32_t>(value + 0.5f) << shift;
       }
       *to++ = mixed;
