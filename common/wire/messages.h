@@ -2,8 +2,7 @@
 // Messages between processes, as plain structs. common/link carries the messages; this file does
 // not depend on a transport. docs/wire_format.md gives topics, QoS and byte layout.
 //
-// Bulk messages borrow their payload. The payload of a received message is valid only during the
-// callback.
+// Bulk messages borrow their payload; a received payload is valid only during the callback.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +24,7 @@ struct WeightsVersion {
   }
 };
 
-// Most bytes of a batch or of weights in one message. The message with its header is then smaller
-// than 1 MB.
+// Most bytes of a batch or of weights in one message, which stays below 1 MB with its header.
 inline constexpr uint64_t kBulkPartBytes = 960 * 1024;
 
 // actor -> the receiver of its records: the replay or, on policy, the learner. The chunk contains
@@ -41,8 +39,7 @@ struct TransitionChunk {
   std::span<const uint8_t> payload;
 };
 
-// Credit for one actor session, from the receiver of its records. A credit is flow control and
-// acknowledgement.
+// Credit for one actor session, from the receiver of its records: flow control, acknowledgement.
 struct Credit {
   // Session of the receiver. If it changes, the actor resends its unacknowledged records.
   uint64_t replay_session = 0;
@@ -50,15 +47,13 @@ struct Credit {
   uint64_t session = 0;
   uint64_t stored = 0;   // every record up to this sequence was handled
   uint64_t allowed = 0;  // highest sequence that may be sent
-  // Spec hash of the receiver. An actor with another hash stops with an error that names both
-  // hashes.
+  // Spec hash of the receiver. An actor with another hash stops with an error naming both.
   uint64_t spec_hash = 0;
   // Newer session of the same actor; the older session must end. 0 = there is no newer session.
   uint64_t superseded_by = 0;
 };
 
-// receiver -> all actors: the credits that have changed. One message contains all these credits,
-// because every actor receives each message.
+// receiver -> all actors: all credits that have changed; every actor receives each message.
 struct CreditsMessage {
   std::vector<Credit> credits;
 };
@@ -70,8 +65,7 @@ struct SampleRequest {
   uint64_t learner_session = 0;
   uint64_t request = 0;  // from 1; selects the sampler's random stream
   uint32_t batch = 0;    // B
-  // Lockstep: the replay serves the request after this number of step records is stored; 0 = at
-  // once.
+  // Lockstep: number of stored step records after which the request is served; 0 = at once.
   uint64_t after_steps = 0;
   uint64_t schema_hash = 0;  // BatchSchema::Hash of the batch (common/wire/batch_schema.h)
   // The learner has released the batches of all requests up to this number, which is < `request`.
