@@ -78,6 +78,13 @@ alignas(64) constexpr int16_t kBlue[32] = {4,  12, 36, 44, 5,  13, 37, 45, 20, 2
                                            60, 21, 29, 53, 61, 4,  12, 36, 44, 5,  13,
                                            37, 45, 20, 28, 52, 60, 21, 29, 53, 61};
 
+// Writes the rows of one channel: two of each part of 16 bytes.
+template <int kPart>
+SHOAL_INLINE void WriteTwoRows(uint8_t* to, int64_t width, __m512i even, __m512i odd) {
+  WriteBytes(to, _mm512_extracti32x4_epi32(even, kPart));
+  WriteBytes(to + width, _mm512_extracti32x4_epi32(odd, kPart));
+}
+
 // Four whole tiles beside each other.
 SHOAL_INLINE void WriteFourTiles(const int32_t* tiles, uint8_t* to, int64_t width, int64_t plane) {
   const __m512i order =
@@ -91,24 +98,18 @@ SHOAL_INLINE void WriteFourTiles(const int32_t* tiles, uint8_t* to, int64_t widt
   const __m512i second = _mm512_permutex2var_epi16(c, red_green, d);
   const __m512i even = _mm512_unpacklo_epi64(first, second);
   const __m512i odd = _mm512_unpackhi_epi64(first, second);
-  WriteBytes(to, _mm512_extracti32x4_epi32(even, 0));
-  WriteBytes(to + width, _mm512_extracti32x4_epi32(odd, 0));
-  WriteBytes(to + 2 * width, _mm512_extracti32x4_epi32(even, 1));
-  WriteBytes(to + 3 * width, _mm512_extracti32x4_epi32(odd, 1));
+  WriteTwoRows<0>(to, width, even, odd);
+  WriteTwoRows<1>(to + 2 * width, width, even, odd);
   to += plane;
-  WriteBytes(to, _mm512_extracti32x4_epi32(even, 2));
-  WriteBytes(to + width, _mm512_extracti32x4_epi32(odd, 2));
-  WriteBytes(to + 2 * width, _mm512_extracti32x4_epi32(even, 3));
-  WriteBytes(to + 3 * width, _mm512_extracti32x4_epi32(odd, 3));
+  WriteTwoRows<2>(to, width, even, odd);
+  WriteTwoRows<3>(to + 2 * width, width, even, odd);
   to += plane;
   const __m512i first_blue = _mm512_permutex2var_epi16(a, blue, b);
   const __m512i second_blue = _mm512_permutex2var_epi16(c, blue, d);
   const __m512i even_blue = _mm512_unpacklo_epi64(first_blue, second_blue);
   const __m512i odd_blue = _mm512_unpackhi_epi64(first_blue, second_blue);
-  WriteBytes(to, _mm512_extracti32x4_epi32(even_blue, 0));
-  WriteBytes(to + width, _mm512_extracti32x4_epi32(odd_blue, 0));
-  WriteBytes(to + 2 * width, _mm512_extracti32x4_epi32(even_blue, 1));
-  WriteBytes(to + 3 * width, _mm512_extracti32x4_epi32(odd_blue, 1));
+  WriteTwoRows<0>(to, width, even_blue, odd_blue);
+  WriteTwoRows<1>(to + 2 * width, width, even_blue, odd_blue);
 }
 
 // Writes the first columns of four whole rows. Returns how many are written.
