@@ -35,7 +35,7 @@ std::vector<int> CpusOfThread(pid_t thread) {
 // For this process and those that it starts, the machine has two nodes, each with half of the CPUs.
 // Returns "" or the reason why that cannot be done here.
 std::string HaveTwoNodes(const std::vector<int>& cpus, const std::filesystem::path& folder) {
-  if (const std::string no = OwnMounts(); !no.empty()) return no;
+  if (std::string no = OwnMounts(); !no.empty()) return no;
   std::string lists[2];
   for (size_t i = 0; i < cpus.size(); ++i) {
     std::string& list = lists[2 * i / cpus.size()];
