@@ -10,6 +10,7 @@
 
 #include "tests/docs/commands.h"
 #include "tests/support/program.h"
+#include "tests/support/roomy_folder.h"
 #include "tests/support/tiny_experiment.h"
 
 namespace shoal {
@@ -59,7 +60,7 @@ class Surroundings {
   }
 
  private:
-  TemporaryFolder folder_;
+  TemporaryFolder folder_{"shoal-", RoomyFolder()};
   std::string path_;
 };
 

@@ -8,12 +8,13 @@
 
 #include "common/base/clock.h"
 #include "tests/support/program.h"
+#include "tests/support/roomy_folder.h"
 
 namespace shoal {
 namespace {
 
 TEST(Check, AMachineThatBuildsShoalCanTrain) {
-  const TemporaryFolder folder;
+  const TemporaryFolder folder("shoal-", RoomyFolder());
   const std::string json = (folder.path() / "check.json").string();
   WriteFileAtomically(json, "an older one");
   const ProgramResult result =

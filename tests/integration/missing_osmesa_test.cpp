@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "tests/support/roomy_folder.h"
 #include "tests/support/training_run.h"
 
 namespace shoal {
@@ -28,7 +29,8 @@ class MissingOsmesa : public testing::Test {
 };
 
 TEST_F(MissingOsmesa, CheckWarnsAndTheMachineCanTrain) {
-  const ProgramResult result = Run({"shoal", "check", "--run-dir", run_.parent().string()});
+  const TemporaryFolder roomy("shoal-", RoomyFolder());
+  const ProgramResult result = Run({"shoal", "check", "--run-dir", roomy.path().string()});
   EXPECT_EQ(ExitCode(result), 0) << result.out << result.err;
   EXPECT_THAT(result.out, AllOf(HasSubstr("OK    rendering"), HasSubstr("WARN  opengl"),
                                 HasSubstr("libosmesa6"), HasSubstr("OK    training")));

@@ -11,6 +11,7 @@
 #include "common/base/numa_nodes.h"
 #include "common/base/usable_cores.h"
 #include "tests/support/processes.h"
+#include "tests/support/roomy_folder.h"
 #include "tests/support/running_training.h"
 
 namespace shoal {
@@ -107,9 +108,10 @@ TEST(OpenMpBinding, TheMaskThatTheUserSetHolds) {
 
 TEST(OpenMpBinding, ThreadsWithoutCoresAreRefusedWithTheReason) {
   if (UsableCores() < 2) GTEST_SKIP() << "needs two cores";
-  const std::vector<std::string> command{ProgramPath("shoal"), "train",     "--preset",
-                                         "fetch-reach-fast",   "--dry-run", "--set",
-                                         "learner.threads=2"};
+  const std::vector<std::string> command{
+      ProgramPath("shoal"), "train",     "--preset",
+      "fetch-reach-fast",   "--dry-run", "--set",
+      "learner.threads=2",  "--set",     "run_dir=" + RoomyFolder().string()};
   const ProgramResult bound = RunCommand(command, seconds(60), {{"OMP_PROC_BIND", "true"}});
   EXPECT_EQ(ExitCode(bound), 0) << "the variable takes no core away: " << bound.err;
   UseOneCore();
@@ -118,8 +120,8 @@ TEST(OpenMpBinding, ThreadsWithoutCoresAreRefusedWithTheReason) {
   EXPECT_THAT(refused.err, HasSubstr("this process may use 1 core: 1 of "));
   EXPECT_THAT(refused.err, HasSubstr("which OMP_PROC_BIND=true may have bound"));
   const ProgramResult check =
-      RunCommand({ProgramPath("shoal"), "check", "--run-dir", fs::temp_directory_path().string()},
-                 seconds(100), {{"OMP_PROC_BIND", "true"}});
+      RunCommand({ProgramPath("shoal"), "check", "--run-dir", RoomyFolder().string()}, seconds(100),
+                 {{"OMP_PROC_BIND", "true"}});
   EXPECT_THAT(check.out, HasSubstr("OMP_PROC_BIND=true is ignored"));
   EXPECT_THAT(check.out, HasSubstr("by its CPU affinity mask"));
 }
