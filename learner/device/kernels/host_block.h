@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs kernels on the host: block by block, the threads of each phase in turn. Shared memory and
+// private values hold invalid numbers before a block begins, as a card does not initialise them.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <vector>
+
+#include "learner/device/kernels/frame.h"
+
+namespace shoal::learner::kernels {
+
+// Order of the blocks, and of the threads of a phase. A kernel that breaks the rules of frame.h has
+// different results in different orders.
+enum class HostOrder { kForward, kBackward };
+
+// One block of a launch on the host.
+template <int kThreads>
+class HostBlock {
+ public:
+  HostBlock(int index, int count, HostOrder order) : index_(index), count_(count), order_(order) {}
+
+  int index() const { return index_; }
+  int count() const { return count_; }
+
+  template <class Body>
+  void Threads(const Body& body) const {
+    for (int i = 0; i < kThreads; ++i) {
+      body(order_ == HostOrder::kForward ? i : kThreads - 1 - i);
+    }
+  }
+
+  // One T for each thread.
+  template <class T>
+  class Private {
+   public:
+    explicit Private(const HostBlock&) : values_(kThreads) {
+      std::memset(static_cast<void*>(values_.data()), 0xff, values_.size() * sizeof(T));
+    }
+    T& operator()(int thread) { return values_[size_t(thread)]; }
+
+   private:
+    std::vector<T> values_;
+  };
+
+  // Returns true in the last of `blocks` blocks that call this function with the same counter. The
+  // counter is 0 before and afterwards. The last block sees what the others wrote.
+  bool FinishesLast(int32_t* counter, int blocks) const {
+    if (++*counter < blocks) return false;
+    *counter = 0;
+    return true;
+  }
+
+ private:
+  const int index_, count_;
+  const HostOrder order_;
+};
+
+template <class Kernel>
+void RunOnHost(const Kernel& kernel, HostOrder order) {
+  using Shared = typename Kernel::Shared;
+  const auto bytes = std::make_unique<std::byte[]>(sizeof(Shared) + alignof(Shared));
+  void* address = bytes.get();
+  size_t space = sizeof(Shared) + alignof(Shared);
+  auto* shared = static_cast<Shared*>(std::align(alignof(Shared), sizeof(Shared), address, space));
+  const int blocks = kernel.blocks();
+  for (int i = 0; i < blocks; ++i) {
+    std::memset(static_cast<void*>(shared), 0xff, sizeof(Shared));
+    const int index = order == HostOrder::kForward ? i : blocks - 1 - i;
+    HostBlock<Kernel::kThreads> block(index, blocks, order);
+    kernel.Run(block, *shared);
+  }
+}
+
+}  // namespace shoal::learner::kernels

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+// Inputs of networks: frames, columns of vectors, labels and standardised vectors.
+// Dimensions: B rows, K*C channels of a stack of frames, (H, W) pixels, L labels, V vector size.
+#pragma once
+
+#include "learner/device/kernels/frame.h"
+#include "learner/device/kernels/numbers.h"
+#include "learner/device/kernels/reduce.h"
+#include "learner/device/kernels/state.h"
+
+namespace shoal::learner::kernels {
+
+// Average pooling and scaling of frames, like common/nn/frame_pooling.h, from planes to NHWC:
+//
+//   out[b, i, j, c] = mean over the pool x pool window at (i*pool, j*pool) of in[b, c] / 255 +
+//   shift
+//
+// Shapes: in (B, channels, height, width) u8; out (B, height/pool, width/pool, out_channels).
+// Channels beyond `channels` become 0.
+struct PoolFrames {
+  static constexpr int kThreads = kElementThreads;
+  using Shared = NoShared;
+
+  const uint8_t* in = nullptr;
+  Target out;
+  int batch = 0, channels = 0, height = 0, width = 0;
+  int pool = 1, out_channels = 0;
+  float factor = 0;  // 1 / (255 pool^2)
+  float shift = 0;
+
+  SHOAL_EVERYWHERE int rows() const { return height / pool; }
+  SHOAL_EVERYWHERE int columns() const { return width / pool; }
+  int blocks() const { return BlocksForElements(int64_t{batch} * rows() * columns()); }
+  bool operator==(const PoolFrames&) const = default;
+
+  // One pixel of all channels: neighbouring threads read neighbouring windows of a plane and write
+  // neighbouring pixels.
+  template <class Block>
+  SHOAL_KERNEL void Run(Block& block, Shared&) const {
+    ForElements(block, block.index(), int64_t(batch) * rows() * columns(), [&](int64_t at) {
+      const int j = int(at % columns()), i = int(at / columns() % rows());
+      const int64_t b = at / columns() / rows();
+      const int64_t plane = int64_t(height) * width;
+      const uint8_t* corner = in + b * channels * plane + int64_t(i) * pool * width + j * pool;
+      for (int c = 0; c < channels; ++c) {
+        const float scaled = float(Window(corner + c * plane)) * factor + shift;
+        out.Set(at * out_channels + c, scaled);
+      }
+      for (int c = channels; c < out_channels; ++c) out.Set(at * out_channels + c, 0.f);
+    });
+  }
+
+ private:
+  SHOAL_KERNEL int Window(const uint8_t* corner) const {
+    int sum = 0;
+    for (int y = 0; y < pool; ++y) {
+      for (int x = 0; x < pool; ++x) sum += corner[y * width + x];
+    }
+    return sum;
+  }
+};
+
+// A piece of CopyColumns: `count` columns from column `first` of `from`, which has `from_width`
+// columns, to column `to_first` of `to`.
+struct ColumnPiece {
+  const float* from = nullptr;
+  int from_width = 0, first = 0, count = 0;
+  Target to;
+  int to_width = 0, to_first = 0;
+  bool adds = false;  // whether to add to the numbers that to.f32 has
+
+  bool operator==(const ColumnPiece&) const = default;
+};
+
+// Copies columns of rows: joins, splits, and parts of networks' inputs. Pieces do not overlap in
+// their targets, and no piece reads what another one writes.
+struct CopyColumns {
+  static constexpr int kThreads = kElementThreads;
+  static constexpr int kMostPieces = 24;
+  using Shared = NoShared;
+
+  int rows = 0;
+  int piece_count = 0;
+  ColumnPiece pieces[kMostPieces];
+
+  void Add(const ColumnPiece& piece) { pieces[piece_count++] = piece; }
+  SHOAL_EVERYWHERE int columns() const {
+    int sum = 0;
+    for (int i = 0; i < piece_count; ++i) sum += pieces[i].count;
+    return sum;
+  }
+  int blocks() const { return BlocksForElements(int64_t{rows} * columns()); }
+  bool operator==(const CopyColumns&) const = default;
+
+  template <class Block>
+  SHOAL_KERNEL void Run(Block& block, Shared&) const {
+    const int width = columns();
+    ForElements(block, block.index(), int64_t(rows) * width, [&](int64_t at) {
+      const int64_t row = at / width;
+      int column = int(at % width), i = 0;
+      for (; column >= pieces[i].count; ++i) column -= pieces[i].count;
+      const ColumnPiece& piece = pieces[i];
+      const float value = piece.from[row * piece.from_width + piece.first + column];
+      const int64_t to = row * piece.to_width + piece.to_first + column;
+      piece.to.Set(to, piece.adds ? piece.to.f32[to] + value : value);
+    });
+  }
+};
+
+// to[b, j] = sum_f from[f, b, first + j] + addend[b, j] for functions f, for example the gradient
+// of a part of the input of several Q functions. from (functions, rows, from_width); to and addend
+// (rows, columns); addend may be null or to.f32.
+struct SumColumns {
+  static constexpr int kThreads = kElementThreads;
+  using Shared = NoShared;
+
+  int functions = 1, rows = 0, columns = 0;
+  const float* from = nullptr;
+  int from_width = 0, first = 0;
+  const float* addend = nullptr;
+  Target to;
+
+  int blocks() const { return BlocksForElements(int64_t{rows} * columns); }
+  bool operator==(const SumColumns&) const = default;
+
+  template <class Block>
+  SHOAL_KERNEL void Run(Block& block, Shared&) const {
+    ForElements(block, block.index(), int64_t(rows) * columns, [&](int64_t at) {
+      const float* of_first = from + at / columns * from_width + first + at % columns;
+      float sum = *of_first;
+      for (int f = 1; f < functions; ++f) sum += of_first[int64_t(f) * rows * from_width];
+      to.Set(at, addend != nullptr ? sum + addend[at] : sum);
+    });
+  }
+};
+
+// labels[b, l] = (number - minus) / unit (learner/engine/columns.h). labels (B, L).
+struct GatherLabels {
+  static constexpr int kThreads = kElementThreads;
+  static constexpr int kMostLabels = 64;
+  using Shared = NoShared;
+
+  // A column of the observed or the privileged vector; from.width 0: none.
+  struct Column {
+    const float* from = nullptr;
+    int width = 0, at = 0;
+    bool operator==(const Column&) const = default;
+  };
+  struct Label {
+    Column number, minus;
+    bool operator==(const Label&) const = default;
+  };
+
+  int rows = 0, label_count = 0;
+  float unit = 1;
+  float* labels = nullptr;
+  Label columns[kMostLabels];
+
+  int blocks() const { return BlocksForElements(int64_t{rows} * label_count); }
+  bool operator==(const GatherLabels&) const = default;
+
+  template <class Block>
+  SHOAL_KERNEL void Run(Block& block, Shared&) const {
+    ForElements(block, block.index(), int64_t(rows) * label_count, [&](int64_t at) {
+      const int64_t row = at / label_count;
+      const Label& label = columns[at % label_count];
+      float number = Value(label.number, row);
+      if (label.minus.width > 0) number -= Value(label.minus, row);
+      labels[at] = number / unit;
+    });
+  }
+
+ private:
+  SHOAL_KERNEL static float Value(const Column& column, int64_t row) {
+    return column.from[row * column.width + column.at];
+  }
+};
+
+// y = clip((x - mean) / sqrt(variance + 1e-8), -10, 10) with the mean and variance of `moments`
+// (learner/engine/moments.h); variances below the floor become the floor. x, y (B, V).
+struct Standardise {
+  static constexpr int kThreads = kElementThreads;
+  using Shared = NoShared;
+
+  int rows = 0, width = 0;
+  const float* x = nullptr;
+  const double* moments = nullptr;  // (1 + 2V)
+  float variance_floor = 0;
+  float* y = nullptr;
+
+  int blocks() const { return BlocksForElements(int64_t{rows} * width); }
+  bool operator==(const Standardise&) const = default;
+
+  template <class Block>
+  SHOAL_KERNEL void Run(Block& block, Shared&) const {
+    ForElements(block, block.index(), int64_t(rows) * width, [&](int64_t at) {
+      const int j = int(at % width);
+      const auto mean = float(moments[1 + j]);
+      const double count = moments[0];
+      const float variance =
+          Most(count > 0 ? float(moments[1 + width + j] / count) : 1.f, variance_floor);
+      y[at] = Clamp((x[at] - mean) * (1 / std::sqrt(variance + 1e-8f)), -10.f, 10.f);
+    });
+  }
+};
+
+// If the flag is set: adds vectors (N, V) to the moments. One block for each column.
+struct AddToMoments {
+  static constexpr int kThreads = 128;
+  struct Shared {
+    Reduction<Sums<1>, kThreads> sum;
+  };
+
+  int rows = 0, width = 0;  // N, V
+  const float* vectors = nullptr;
+  double* moments = nullptr;
+  const Flags* flags = nullptr;  // null: outside of an update
+  int32_t* finished = nullptr;   // counter, 0
+
+  int blocks() const { return rows > 0 ? width : 0; }
+  bool operator==(const AddToMoments&) const = default;
+
+  template <class Block>
+  SHOAL_KERNEL void Run(Block& block, Shared& shared) const {
+    if (flags != nullptr && !Moves(*flags)) return;
+    const int j = block.index();
+    const double mean = SumOver(block, shared, [&](double x) { return x; }) / rows;
+    const double squares =
+        SumOver(block, shared, [&](double x) { return (x - mean) * (x - mean); });
+    block.Threads([&](int thread) {
+      if (thread != 0) return;
+      const double count = moments[0], total = count + rows, apart = mean - moments[1 + j];
+      moments[1 + width + j] += squares + apart * apart * count * rows / total;
+      moments[1 + j] += apart * rows / total;
+    });
+    // All blocks read the count, so only the last of them changes it.
+    if (!block.FinishesLast(finished, block.count())) return;
+    block.Threads([&](int thread) {
+      if (thread == 0) moments[0] += rows;
+    });
+  }
+
+ private:
+  template <class Block, class Term>
+  SHOAL_KERNEL double SumOver(Block& block, Shared& shared, const Term& term) const {
+    block.Threads([&](int thread) {
+      auto sum = Sums<1>::Zero();
+      ForAll<kThreads>(thread, rows, [&](int64_t i) {
+        sum[0] += term(double(vectors[i * width + block.index()]));
+      });
+      shared.sum.of_thread[thread] = sum;
+    });
+    return Combine(block, shared.sum)[0];
+  }
+};
+
+}  // namespace shoal::learner::kernels
