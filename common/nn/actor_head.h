@@ -34,7 +34,7 @@ class ActorHead {
   const float* log_std() const { return log_std_.empty() ? nullptr : log_std_.data(); }
 
   // See ObservationTrunk::features.
-  const Features* trunk_features() const { return trunk_.features(); }
+  const HostFeatures* trunk_features() const { return trunk_.features(); }
 
   void Refresh();
   // vector (B, V).

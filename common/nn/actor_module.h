@@ -10,10 +10,9 @@
 #include "common/nn/actor_critic_plan.h"
 #include "common/nn/array.h"
 #include "common/nn/module.h"
+#include "common/nn/networks.h"
 
 namespace shoal::nn {
-
-class Features;
 
 class ActorModule final : public Module {
  public:
@@ -21,31 +20,29 @@ class ActorModule final : public Module {
   // of the features for their encoder.
   ActorModule(const ActorPlan& plan, const Features* features, bool trains_encoder, Use use,
               const ModuleContext& context);
-  ~ActorModule() override;
 
-  // All arrays are (B, A). mean: before tanh. log_std: empty for a deterministic actor. action:
-  // tanh(mean) of a deterministic actor, empty for a Gaussian actor.
-  struct Output {
-    Array mean, log_std, action;
-  };
+  using Output = ActorArrays;
 
   // The trunk's outputs, for a readout; null without pixels.
-  const Features* trunk_features() const;
+  const Features* trunk_features() const { return network_->trunk_features(); }
 
-  void Refresh() override;
+  void Refresh() override { network_->Refresh(); }
   // Reads the current features and vector (B, V).
-  Output Forward(Array vector);
+  Output Forward(Array vector) { return network_->Forward(vector); }
   // Computes the gradients of the parameters for the latest Forward of a Gaussian actor. Arguments:
   // dL/dmean and dL/dlog_std, both (B, A).
-  void Backward(Array mean_gradient, Array log_std_gradient);
+  void Backward(Array mean_gradient, Array log_std_gradient) {
+    network_->Backward(mean_gradient, log_std_gradient);
+  }
   // Computes the gradients of the parameters for the latest Forward of a deterministic actor.
   // action_gradient: dL/daction (B, A). The loss also includes mean_penalty times the mean square
   // of `mean`.
-  void BackwardAction(Array action_gradient, double mean_penalty);
+  void BackwardAction(Array action_gradient, double mean_penalty) {
+    network_->BackwardAction(action_gradient, mean_penalty);
+  }
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  const std::unique_ptr<ActorNetwork> network_;
 };
 
 }  // namespace shoal::nn

@@ -98,11 +98,9 @@ void Average(std::span<const Weighted> arrays, int64_t n, float* mean) {
 
 Adam::Adam(const std::vector<ParameterSet*>& sets, const Options& options, Replica* replica)
     : sets_(sets),
+      options_(options),
       replica_(replica != nullptr ? replica : &alone_),
-      shared_(replica_->Shared<Shared>([this] { return MakeShared(); })),
-      rate_(options.rate),
-      epsilon_(options.epsilon),
-      max_norm_(options.max_norm) {
+      shared_(replica_->Shared<Shared>([this] { return MakeShared(); })) {
   shared_->members.push_back(this);
 }
 
@@ -141,13 +139,13 @@ double Adam::GatherGradients() {
     const Replica::Share share = ShareOf(*set);
     squares += SumOfSquares(set->gradients() + share.begin, share.end - share.begin);
   }
-  if (max_norm_ <= 0) ComputeStep();
+  if (options_.max_norm <= 0) ComputeStep();
   squares_ = replica_->Sum(squares);
   return *squares_;
 }
 
 void Adam::ClipGradients() {
-  const double factor = max_norm_ / (std::sqrt(*squares_) + 1e-6);
+  const double factor = options_.max_norm / (std::sqrt(*squares_) + 1e-6);
   if (factor >= 1) return;
   for (ParameterSet* set : sets_) {
     const Replica::Share share = ShareOf(*set);
@@ -162,7 +160,7 @@ void Adam::ComputeStep() {
 void Adam::StepShare(size_t s) {
   const double t = double(steps_ + 1);
   const StepSize step{float(rate() / (1 - std::pow(kBeta1, t))),
-                      float(1 / std::sqrt(1 - std::pow(kBeta2, t))), float(epsilon_)};
+                      float(1 / std::sqrt(1 - std::pow(kBeta2, t))), float(options_.epsilon)};
   ParameterSet& set = *sets_[s];
   auto& [m, v] = shared_->moments[s];
   const size_t next = 1 - current_;
@@ -177,7 +175,7 @@ void Adam::StepShare(size_t s) {
 
 void Adam::Step() {
   if (!squares_) GatherGradients();
-  if (max_norm_ > 0) {
+  if (options_.max_norm > 0) {
     ClipGradients();
     ComputeStep();
     replica_->Meet();
@@ -198,7 +196,32 @@ void Adam::Undo() {
   Exchange();
 }
 
+void Adam::Attach(std::unique_ptr<AdamMirror> mirror) {
+  CHECK(!mirror_ && replica_->count() == 1);
+  mirror_ = std::move(mirror);
+  mirror_is_old_ = true;
+}
+
+void Adam::UseMirror() {
+  CHECK(mirror_);
+  if (mirror_is_old_) mirror_->Send(CurrentMoments(), steps_);
+  mirror_is_old_ = false;
+  host_is_old_ = true;
+}
+
+void Adam::FetchFromMirror() const {
+  if (host_is_old_) steps_ = mirror_->Fetch(CurrentMoments());
+  host_is_old_ = false;
+}
+
+std::vector<AdamMirror::Moments> Adam::CurrentMoments() const {
+  std::vector<AdamMirror::Moments> moments;
+  for (auto& [m, v] : shared_->moments) moments.push_back({m[current_].data(), v[current_].data()});
+  return moments;
+}
+
 void Adam::Export(const std::string& group, TensorMap* tensors) const {
+  if (mirror_) FetchFromMirror();
   for (size_t s = 0; s < sets_.size(); ++s) {
     const auto& [m, v] = shared_->moments[s];
     sets_[s]->ExportTrained(m[current_].data(), "adam.m.", tensors);
@@ -223,6 +246,8 @@ void Adam::Import(const TensorMap& tensors, const std::string& group, const std:
   }
   steps_ = steps;
   squares_.reset();
+  host_is_old_ = false;
+  mirror_is_old_ = true;
 }
 
 void MoveTowards(float tau, const float* online, int64_t n, float* target) {

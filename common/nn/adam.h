@@ -20,9 +20,11 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "common/nn/parameter_mirror.h"
 #include "common/nn/parameter_set.h"
 #include "common/nn/replica.h"
 
@@ -51,7 +53,7 @@ class Adam {
 
   // Sets the rate of all following steps to factor * Options::rate.
   void set_rate_factor(double factor) { rate_factor_ = factor; }
-  double rate() const { return rate_ * rate_factor_; }
+  double rate() const { return options_.rate * rate_factor_; }
 
   // Averages the gradients over replicas and returns the sum of their squares. Each replica
   // averages its own share; its other gradients do not change. Call it once for each backward pass,
@@ -65,7 +67,20 @@ class Adam {
   // Undoes the last Step exactly. Allowed at most once after each Step, and before the next
   // GatherGradients.
   void Undo();
-  uint64_t steps() const { return steps_; }
+  uint64_t steps() const {
+    if (mirror_) FetchFromMirror();
+    return steps_;
+  }
+
+  // For an engine that does not compute in host memory (parameter_mirror.h). It makes the steps, so
+  // GatherGradients, Step and Undo are not used.
+  void Attach(std::unique_ptr<AdamMirror> mirror);
+  AdamMirror* mirror() const { return mirror_.get(); }  // null: no mirror
+  // Sends newer moments of the host to the mirror, whose moments the engine will change. CHECKs
+  // that there is a mirror.
+  void UseMirror();
+  const std::vector<ParameterSet*>& sets() const { return sets_; }
+  const Options& options() const { return options_; }
 
   // Writes tensors "adam.m.NAME" and "adam.v.NAME" for every parameter, and "adam.steps.`group`".
   void Export(const std::string& group, TensorMap* tensors) const;
@@ -93,17 +108,23 @@ class Adam {
   void ComputeStep();
   void StepShare(size_t set);
   void Exchange();
+  // The current moments of all sets.
+  std::vector<AdamMirror::Moments> CurrentMoments() const;
+  void FetchFromMirror() const;
 
   const std::vector<ParameterSet*> sets_;
+  const Options options_;
   Replica alone_;
   Replica* const replica_;
   const std::shared_ptr<Shared> shared_;
   size_t current_ = 0;             // index of the current moments
   std::optional<double> squares_;  // sum of squares of the gathered gradients
 
-  double rate_, epsilon_, max_norm_;
   double rate_factor_ = 1;
-  uint64_t steps_ = 0;
+  mutable uint64_t steps_ = 0;
+  std::unique_ptr<AdamMirror> mirror_;
+  // Whether the other copy is newer.
+  mutable bool host_is_old_ = false, mirror_is_old_ = false;
 };
 
 // target += tau * (online - target), n floats.

@@ -23,6 +23,7 @@ class ArrayOf {
 
  private:
   friend struct HostMemory;
+  friend struct DeviceMemory;
   ArrayOf(T* data, int64_t size) : data_(data), size_(size) {}
 
   T* data_ = nullptr;

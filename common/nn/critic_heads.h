@@ -26,7 +26,7 @@ class CriticHeads {
   const float* q(int i) const { return mlps_[size_t(i)].output(); }  // (B)
 
   // See ObservationTrunk::features.
-  const Features* trunk_features() const { return trunk_.features(); }
+  const HostFeatures* trunk_features() const { return trunk_.features(); }
 
   void Refresh();
   // Computes the part that depends on the observation alone. vector: (B, V).

@@ -7,38 +7,48 @@
 #include "common/nn/parallel.h"
 
 namespace shoal::nn {
+namespace {
 
-struct EncoderModule::Impl {
-  Impl(const LayerContext& context, const NetworkPlan& plan)
-      : encoder(context, plan), features(encoder.features(), encoder.features_gradient()) {}
+class HostEncoder final : public EncoderNetwork {
+ public:
+  HostEncoder(const NetworkPlan& plan, const LayerContext& context, int threads)
+      : threads_(threads),
+        encoder_(context, plan),
+        features_(encoder_.features(), encoder_.features_gradient()) {}
 
-  Encoder encoder;
-  const Features features;
+  const Features& features() const override { return features_; }
+  void Refresh() override {
+    const ThreadScope scope(threads_);
+    encoder_.Refresh();
+  }
+  void Forward(Frames frames, Statistics statistics) override {
+    const ThreadScope scope(threads_);
+    encoder_.Forward(HostValues(frames).data(), statistics);
+  }
+  void Backward() override {
+    const ThreadScope scope(threads_);
+    encoder_.Backward();
+  }
+
+ private:
+  const int threads_;
+  Encoder encoder_;
+  const HostFeatures features_;
 };
 
-EncoderModule::EncoderModule(const NetworkPlan& plan, Use use, const ModuleContext& context)
-    : Module(plan.Parameters(), use, context) {
+std::unique_ptr<EncoderNetwork> MakeEncoderNetwork(const NetworkPlan& plan,
+                                                   ParameterSet* parameters, Module::Use use,
+                                                   const ModuleContext& context) {
+  if (context.maker != nullptr) return context.maker->MakeEncoder(plan, use, parameters);
   const ThreadScope scope(context.threads);
-  impl_ = std::make_unique<Impl>(ToLayerContext(&parameters_, use, context), plan);
+  return std::make_unique<HostEncoder>(plan, ToLayerContext(parameters, use, context),
+                                       context.threads);
 }
 
-EncoderModule::~EncoderModule() = default;
+}  // namespace
 
-const Features& EncoderModule::features() const { return impl_->features; }
-
-void EncoderModule::Refresh() {
-  const ThreadScope scope(context_.threads);
-  impl_->encoder.Refresh();
-}
-
-void EncoderModule::Forward(Frames frames, Statistics statistics) {
-  const ThreadScope scope(context_.threads);
-  impl_->encoder.Forward(HostValues(frames).data(), statistics);
-}
-
-void EncoderModule::Backward() {
-  const ThreadScope scope(context_.threads);
-  impl_->encoder.Backward();
-}
+EncoderModule::EncoderModule(const NetworkPlan& plan, Use use, const ModuleContext& context)
+    : Module(plan.Parameters(), use, context),
+      network_(MakeEncoderNetwork(plan, &parameters_, use, context)) {}
 
 }  // namespace shoal::nn

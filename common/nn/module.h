@@ -18,6 +18,7 @@
 
 namespace shoal::nn {
 
+class NetworkMaker;  // networks.h
 class Scratchpad;
 
 // Statistics of batch normalisation. kBatch: statistics of the current batch, for a forward pass
@@ -37,6 +38,7 @@ struct ModuleContext {
   int batch;    // B, or the rows of the replica
   int threads;  // threads of each pass of a module
   Replica* replica = nullptr;
+  NetworkMaker* maker = nullptr;  // null: networks of the CPU
   std::shared_ptr<Scratchpad> scratchpad;
 };
 

@@ -33,7 +33,7 @@ class ObservationTrunk {
 
   // The trunk's outputs (B, F) f32, for a readout (readout_module.h). In training, the readout may
   // write their gradient before Backward. Null without pixels.
-  const Features* features() const { return own_features_ ? &*own_features_ : nullptr; }
+  const HostFeatures* features() const { return own_features_ ? &*own_features_ : nullptr; }
 
   // (B, F + V + extra) f32.
   Rows& input() { return input_; }
@@ -52,7 +52,7 @@ class ObservationTrunk {
   int features_, vector_size_, extra_column_;
   Rows input_;
   std::optional<Rows> readout_gradient_;  // dL/d(trunk's outputs) (B, F); 0 if no readout wrote it
-  std::optional<Features> own_features_;
+  std::optional<HostFeatures> own_features_;
   std::vector<float> dense_gradient_;  // (B, F)
 };
 

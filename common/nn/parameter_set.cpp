@@ -150,6 +150,29 @@ std::shared_ptr<ParameterSet::Shared> ParameterSet::MakeShared(const Replica& re
   return shared;
 }
 
+void ParameterSet::Attach(std::unique_ptr<ParameterMirror> mirror) const {
+  CHECK(use_ != Use::kBorrowing && !mirror_);
+  mirror_ = std::move(mirror);
+  mirror_is_old_ = true;
+}
+
+void ParameterSet::UseMirror(bool changes) const {
+  CHECK(mirror_);
+  if (mirror_is_old_) mirror_->Send(shared_->arrays[current_].data());
+  mirror_is_old_ = false;
+  host_is_old_ = host_is_old_ || changes;
+}
+
+void ParameterSet::FetchFromMirror() const {
+  if (host_is_old_) mirror_->Fetch(shared_->arrays[current_].data());
+  host_is_old_ = false;
+}
+
+void ParameterSet::MakeMirrorOld() {
+  FetchFromMirror();
+  mirror_is_old_ = true;
+}
+
 bool ParameterSet::Borrows(const ParameterSpec& parameter) const {
   return use_ == Use::kBorrowing && parameter.shape.size() > 1;
 }

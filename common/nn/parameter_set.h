@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/nn/network_plan.h"
+#include "common/nn/parameter_mirror.h"
 #include "common/nn/replica.h"
 #include "common/nn/safetensors.h"
 
@@ -100,12 +101,23 @@ class ParameterSet {
   // parameter.
   int64_t OffsetOf(std::string_view prefix) const;
 
+  // Offset of parameter number `spec` of specs().
+  int64_t OffsetOf(size_t spec) const { return offsets_[spec]; }
+
   int64_t size() const { return size_; }  // number of floats, including gaps
   // Number of floats without statistics, which is the size of the arrays of gradients and
   // optimisers.
   int64_t trained_size() const { return trained_size_; }
-  const float* values() const { return shared_->arrays[current_].data(); }
-  float* values() { return shared_->arrays[current_].data(); }
+  // The host's array. If the set has a mirror, these functions first fetch newer values from the
+  // mirror, and the second one makes the mirror's values the older ones.
+  const float* values() const {
+    if (mirror_) FetchFromMirror();
+    return shared_->arrays[current_].data();
+  }
+  float* values() {
+    if (mirror_) MakeMirrorOld();
+    return shared_->arrays[current_].data();
+  }
   float* next_values() { return shared_->arrays[1 - current_].data(); }  // null: no second array
   const float* gradients() const { return gradients_.data(); }
   float* gradients() { return gradients_.data(); }
@@ -113,6 +125,16 @@ class ParameterSet {
   // Layouts of this set's weights that replicas share; null without replicas.
   SharedLayouts* layouts() const { return shared_->layouts.get(); }
   int rank() const { return rank_; }  // rank of its replica
+
+  // For an engine that does not compute in host memory (parameter_mirror.h). Gradients, `Exchange`
+  // and the second array of values are not used then. An engine attaches mirrors of its own to sets
+  // that it gets as constants, because values do not change by that.
+  void Attach(std::unique_ptr<ParameterMirror> mirror) const;
+  // Null: no mirror.
+  ParameterMirror* mirror() const { return mirror_.get(); }
+  // Sends newer values of the host to the mirror. `changes`: the engine will change the mirror's
+  // values. CHECKs that there is a mirror.
+  void UseMirror(bool changes) const;
 
   // Writes an array of this set's values as named tensors; `prefix` precedes each name.
   void Export(const float* array, const std::string& prefix, TensorMap* tensors) const;
@@ -144,6 +166,8 @@ class ParameterSet {
   };
   std::shared_ptr<Shared> MakeShared(const Replica& replica) const;
   bool Borrows(const ParameterSpec& parameter) const;
+  void FetchFromMirror() const;
+  void MakeMirrorOld();
   PlainValues& BorrowedOf(const ParameterSpec& parameter);
 
   const Use use_;
@@ -156,6 +180,9 @@ class ParameterSet {
   size_t current_ = 0;  // index of the array with the values
   std::vector<float> gradients_;
   std::vector<PlainValues> borrowed_;  // one for each spec; empty unless kBorrowing
+  mutable std::unique_ptr<ParameterMirror> mirror_;
+  // Whether the other copy has newer values.
+  mutable bool host_is_old_ = false, mirror_is_old_ = false;
 };
 
 }  // namespace shoal::nn

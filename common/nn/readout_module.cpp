@@ -8,10 +8,38 @@
 #include "common/nn/linear.h"
 #include "common/nn/network_plan.h"
 #include "common/nn/parallel.h"
-#include "common/nn/primitive_descs.h"
 
 namespace shoal::nn {
 namespace {
+
+class HostReadout final : public ReadoutNetwork {
+ public:
+  HostReadout(const std::string& name, const HostFeatures& trunk, const LayerContext& context,
+              int threads)
+      : threads_(threads),
+        linear_(context, name, trunk.values(), trunk.gradient()),
+        values_(size_t(context.batch) * size_t(linear_.outputs())) {}
+
+  void Refresh() override {
+    const ThreadScope scope(threads_);
+    linear_.Refresh();
+  }
+  Array Forward() override {
+    const ThreadScope scope(threads_);
+    linear_.Forward();
+    return HostArray(std::span(linear_.output(), values_));
+  }
+  void Backward(Array gradient) override {
+    const ThreadScope scope(threads_);
+    std::ranges::copy(HostValues(gradient), linear_.output_gradient());
+    linear_.Backward({.parameters = true, .source = true});
+  }
+
+ private:
+  const int threads_;
+  Linear linear_;
+  const size_t values_;  // (B, L)
+};
 
 std::vector<ParameterSpec> Parameters(const std::string& name, int inputs, int outputs) {
   NetworkPlan plan({inputs});
@@ -19,40 +47,21 @@ std::vector<ParameterSpec> Parameters(const std::string& name, int inputs, int o
   return plan.Parameters();
 }
 
-int Columns(const Features& trunk) { return int(DimsOf(trunk.values())[1]); }
+std::unique_ptr<ReadoutNetwork> MakeReadoutNetwork(const std::string& name, const Features& trunk,
+                                                   ParameterSet* parameters,
+                                                   const ModuleContext& context) {
+  if (context.maker != nullptr) return context.maker->MakeReadout(name, trunk, parameters);
+  const ThreadScope scope(context.threads);
+  return std::make_unique<HostReadout>(name, OnHost(trunk),
+                                       ToLayerContext(parameters, Module::Use::kTraining, context),
+                                       context.threads);
+}
 
 }  // namespace
 
-struct ReadoutModule::Impl {
-  Linear linear;
-};
-
 ReadoutModule::ReadoutModule(const std::string& name, int outputs, const Features& trunk,
                              const ModuleContext& context)
-    : Module(Parameters(name, Columns(trunk), outputs), Use::kTraining, context) {
-  const ThreadScope scope(context.threads);
-  impl_ = std::make_unique<Impl>(Impl{Linear(ToLayerContext(&parameters_, Use::kTraining, context),
-                                             name, trunk.values(), trunk.gradient())});
-}
-
-ReadoutModule::~ReadoutModule() = default;
-
-void ReadoutModule::Refresh() {
-  const ThreadScope scope(context_.threads);
-  impl_->linear.Refresh();
-}
-
-Array ReadoutModule::Forward() {
-  const ThreadScope scope(context_.threads);
-  impl_->linear.Forward();
-  const auto size = size_t(context_.batch) * size_t(impl_->linear.outputs());
-  return HostArray(std::span(impl_->linear.output(), size));
-}
-
-void ReadoutModule::Backward(Array gradient) {
-  const ThreadScope scope(context_.threads);
-  std::ranges::copy(HostValues(gradient), impl_->linear.output_gradient());
-  impl_->linear.Backward({.parameters = true, .source = true});
-}
+    : Module(Parameters(name, trunk.columns(), outputs), Use::kTraining, context),
+      network_(MakeReadoutNetwork(name, trunk, &parameters_, context)) {}
 
 }  // namespace shoal::nn

@@ -13,10 +13,9 @@
 
 #include "common/nn/array.h"
 #include "common/nn/module.h"
+#include "common/nn/networks.h"
 
 namespace shoal::nn {
-
-class Features;
 
 class ReadoutModule final : public Module {
  public:
@@ -24,18 +23,16 @@ class ReadoutModule final : public Module {
   // trunk has at most one readout.
   ReadoutModule(const std::string& name, int outputs, const Features& trunk,
                 const ModuleContext& context);
-  ~ReadoutModule() override;
 
-  void Refresh() override;
+  void Refresh() override { network_->Refresh(); }
   // Returns y (B, L) for the trunk's current outputs.
-  Array Forward();
+  Array Forward() { return network_->Forward(); }
   // Computes the gradients of the parameters and of the trunk's outputs from dL/dy (B, L). The next
   // Backward of the trunk's module uses the gradient of the outputs.
-  void Backward(Array gradient);
+  void Backward(Array gradient) { network_->Backward(gradient); }
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  const std::unique_ptr<ReadoutNetwork> network_;
 };
 
 }  // namespace shoal::nn

@@ -195,7 +195,7 @@ TEST_P(ModulesTest, ATargetFollowsAnyModuleByTheShareAsked) {
   CopyParameters(online, &target);
   const auto features = [&](EncoderModule* encoder) {
     encoder->Forward(HostArray(frames_), Statistics::kRunning);
-    return ReadMemory(encoder->features().values());
+    return ReadMemory(OnHost(encoder->features()).values());
   };
   EXPECT_EQ(features(&target), features(&online));
 

@@ -95,13 +95,13 @@ class TorchvisionTest : public testing::TestWithParam<EncoderCase> {
       images.push_back(uint8_t(u * 256));
     }
     encoder_.Forward(HostArray(images), statistics);
-    return ReadMemory(encoder_.features().values());
+    return ReadMemory(OnHost(encoder_.features()).values());
   }
 
   void Backward(const std::string& name, size_t features) {
     std::vector<float> coefficient(features);
     FillSymmetric(name, 1, coefficient);
-    FillMemory(ToDoubles(coefficient), encoder_.features().gradient());
+    FillMemory(ToDoubles(coefficient), OnHost(encoder_.features()).gradient());
     encoder_.Backward();
   }
 
