@@ -33,7 +33,8 @@ constexpr Algorithm kAlgorithms[] = {
      .figures = kPpoFigures,
      .sb3 = "PPO",
      .make = MakePpoAgent,
-     .divides_rows = false},
+     .divides_rows = false,
+     .on_devices = false},
 };
 
 std::vector<const Figure*> CollectFigures() {

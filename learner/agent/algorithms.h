@@ -32,6 +32,8 @@ struct Algorithm {
   // Whether the algorithm can run as replicas, each with its own engine and a share of the rows of
   // each batch (replicated_agent.h). If not, threads share each pass of the networks.
   bool divides_rows = true;
+  // Whether the engine of devices (learner/device) computes all operations of the algorithm.
+  bool on_devices = true;
 };
 
 std::span<const Algorithm> Algorithms();

@@ -52,7 +52,7 @@ const std::set<std::string> kEmptyNames = {"utils", "util",    "helpers", "helpe
 const std::map<std::string, std::vector<std::string>> kRooms = {
     {"actor", {"worlds", "hosted", "acting", "sending", "loop", "evaluation"}},
     {"replay_server", {"core", "service"}},
-    {"learner", {"engine", "device", "agent", "batch_stream.h", "rollouts"}},
+    {"learner", {"engine", "agent", "device", "batch_stream.h", "rollouts"}},
     {"launch",
      {"record", "processes", "watch", "run", "client", "check", "commands", "tools/film",
       "tools/experiment", "tools/report", "tools/export", "tools/dataset", "tools/observability",

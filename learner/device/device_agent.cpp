@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "learner/device/device_agent.h"
+
+#include <fmt/ranges.h>
+
+#include <string_view>
+#include <vector>
+
+#include "common/base/error.h"
+#include "common/nn/actor_critic_plan.h"
+#include "learner/agent/algorithms.h"
+#include "learner/device/device_engine.h"
+#include "learner/device/modules/device_encoder.h"
+
+namespace shoal::learner::device {
+namespace {
+
+// An algorithm's agent, and its engine.
+class DeviceAgent final : public Agent {
+ public:
+  DeviceAgent(const Config& config, const ObservationSpec& spec, nn::Precision precision,
+              Device* device)
+      : engine_(device, precision, config.learner.batch),
+        agent_(FindAlgorithm(config.learner.algorithm).make(config, spec, &engine_)) {}
+
+  std::vector<UpdateOutcome> Submit(const BatchView& batch,
+                                    const OnStageEnd& on_stage_end) override {
+    return agent_->Submit(batch, on_stage_end);
+  }
+  std::vector<UpdateOutcome> Finish() override { return agent_->Finish(); }
+  uint64_t updates() const override { return agent_->updates(); }
+  nn::TensorMap PolicyTensors() const override { return agent_->PolicyTensors(); }
+  nn::TensorMap AveragedPolicyTensors() const override { return agent_->AveragedPolicyTensors(); }
+  nn::TensorMap AllTensors() const override { return agent_->AllTensors(); }
+  void Restore(const nn::TensorMap& tensors, const std::string& source) override {
+    agent_->Restore(tensors, source);
+  }
+
+ private:
+  DeviceEngine engine_;
+  const std::unique_ptr<Agent> agent_;
+};
+
+}  // namespace
+
+void CheckComputes(const Config& config, const ObservationSpec& spec) {
+  const Algorithm& algorithm = FindAlgorithm(config.learner.algorithm);
+  if (!algorithm.on_devices) {
+    std::vector<std::string_view> names;
+    for (const Algorithm& other : Algorithms()) {
+      if (other.on_devices) names.push_back(other.name);
+    }
+    throw UsageError(
+        "learner.algorithm = {}: a device does not compute this algorithm, expected {}",
+        algorithm.name, fmt::join(names, " | "));
+  }
+  if (spec.HasPixels()) {
+    CheckEncoder(nn::PlanEncoder(config.network, spec), config.network.encoder);
+  }
+}
+
+std::unique_ptr<Agent> MakeDeviceAgent(const Config& config, const ObservationSpec& spec,
+                                       nn::Precision precision, Device* device) {
+  CheckComputes(config, spec);
+  return std::make_unique<DeviceAgent>(config, spec, precision, device);
+}
+
+}  // namespace shoal::learner::device

@@ -1,0 +1,653 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "learner/device/device_engine.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "common/base/check.h"
+#include "common/nn/device_memory.h"
+#include "learner/engine/batch_faults.h"
+#include "learner/engine/moments.h"
+
+namespace shoal::learner::device {
+namespace {
+
+using nn::AddressOf;
+using nn::DeviceArray;
+
+template <size_t n>
+void SetAddresses(std::span<const Array> arrays, const float* (&addresses)[n]) {
+  CHECK(arrays.size() <= n) << arrays.size() << " arrays";
+  for (size_t i = 0; i < arrays.size(); ++i) addresses[i] = AddressOf(arrays[i]);
+}
+
+template <size_t n>
+void SetAddresses(std::span<const Array> arrays, float* (&addresses)[n]) {
+  CHECK(arrays.size() <= n) << arrays.size() << " arrays";
+  for (size_t i = 0; i < arrays.size(); ++i) addresses[i] = AddressOf(arrays[i]);
+}
+
+kernels::CriticFigures FiguresOf(const CriticNumbers& numbers) {
+  return {.loss = AddressOf(numbers.loss),
+          .q_mean = AddressOf(numbers.q_mean),
+          .target_mean = AddressOf(numbers.target_mean),
+          .q1_mean = AddressOf(numbers.q1_mean),
+          .q1_std = AddressOf(numbers.q1_std),
+          .q2_mean = AddressOf(numbers.q2_mean),
+          .q2_std = AddressOf(numbers.q2_std),
+          .q_min_mean = AddressOf(numbers.q_min_mean),
+          .q_min_std = AddressOf(numbers.q_min_std),
+          .q_min_min = AddressOf(numbers.q_min_min),
+          .q_min_max = AddressOf(numbers.q_min_max)};
+}
+
+// Makes arrays of a batch in a landing. If the memory of the batch is one block, the block is
+// copied as a whole.
+class BatchPlaces {
+ public:
+  BatchPlaces(const BatchView& batch, Landing* landing) : batch_(batch), landing_(landing) {
+    if (batch.data == nullptr || batch.first_row != 0) return;
+    if (batch.rows() != size_t(batch.schema->batch())) return;
+    block_ = {batch.data, batch.schema->total_bytes()};
+    place_ = landing->Borrow(block_);
+  }
+
+  template <class T>
+  nn::ArrayOf<T> Of(std::span<T> values) {
+    if (values.empty()) return {};
+    return DeviceArray(AddressOfValues(std::span<const T>(values)), int64_t(values.size()));
+  }
+
+ private:
+  template <class T>
+  T* AddressOfValues(std::span<const T> values) {
+    const auto* first = reinterpret_cast<const uint8_t*>(values.data());
+    if (block_.data() <= first && first < block_.data() + block_.size()) {
+      return reinterpret_cast<T*>(place_ + (first - block_.data()));
+    }
+    return landing_->Add(values);
+  }
+
+  const BatchView& batch_;
+  Landing* const landing_;
+  std::span<const uint8_t> block_;
+  uint8_t* place_ = nullptr;
+};
+
+}  // namespace
+
+DeviceEngine::DeviceEngine(Device* device, nn::Precision precision, int batch, int in_flight)
+    : device_(device),
+      in_flight_(size_t(in_flight)),
+      workspace_(device, precision, batch),
+      networks_(&workspace_),
+      modules_(precision, batch, /*threads=*/1),
+      recordings_(device),
+      results_(workspace_.New<Results>(1)),
+      read_{},
+      counter_(workspace_.New<int32_t>(1)) {
+  CHECK(in_flight >= 0) << in_flight;
+  modules_.maker = &networks_;
+  for (int i = 0; i < 2; ++i) landings_.push_back(std::make_unique<Landing>(device));
+  for (int i = 0; i <= in_flight; ++i) {
+    slots_.push_back(
+        {static_cast<Results*>(device->AllocateHost(sizeof(Results))), device->NewEvent()});
+  }
+}
+
+DeviceEngine::~DeviceEngine() {
+  Quietly([&] { device_->Finish(); });  // recordings are not destroyed while they run
+  for (const Slot& slot : slots_) Quietly([&] { device_->FreeHost(slot.results); });
+}
+
+// ---- Memory and numbers ----
+
+Array DeviceEngine::NewArray(int columns) {
+  const int64_t size = int64_t{rows()} * columns;
+  return DeviceArray(workspace_.New<float>(size), size);
+}
+
+Number DeviceEngine::NewNumber() {
+  CHECK(numbers_ < Results::kMostNumbers) << numbers_ << " numbers";
+  return DeviceArray(&results_->numbers[numbers_++], 1);
+}
+
+Moments DeviceEngine::NewMoments(int width) {
+  const auto size = int64_t(MomentsSize(size_t(width)));
+  return DeviceArray(workspace_.New<double>(size), size);
+}
+
+size_t DeviceEngine::IndexOf(Number number) const {
+  const ptrdiff_t index = AddressOf(number) - &results_->numbers[0];
+  CHECK(index >= 0 && size_t(index) < numbers_);
+  return size_t(index);
+}
+
+void DeviceEngine::Set(Number number, double value) {
+  CHECK(!updating_);
+  host_numbers_[IndexOf(number)] = value;
+  read_.numbers[IndexOf(number)] = value;
+}
+
+void DeviceEngine::Put(std::span<const float> values, Array array) {
+  CHECK(!updating_ && int64_t(values.size()) == array.size()) << values.size();
+  device_->CopyIn(Lane::kCommands, values.data(), int64_t(values.size_bytes()), AddressOf(array));
+  device_->Finish();
+}
+
+double DeviceEngine::Read(Number number) const {
+  CHECK(!updating_) << "an update depends on no number that is read";
+  return read_.numbers[IndexOf(number)];
+}
+
+std::vector<float> DeviceEngine::ReadRows(Array array) const {
+  CHECK(!updating_) << "an update depends on no array that is read";
+  std::vector<float> values(size_t(array.size()));
+  device_->CopyOut(Lane::kCommands, AddressOf(array), int64_t(values.size() * sizeof(float)),
+                   values.data());
+  device_->Finish();
+  return values;
+}
+
+std::vector<double> DeviceEngine::ReadMoments(Moments moments) const {
+  CHECK(!updating_);
+  std::vector<double> values(size_t(moments.size()));
+  device_->CopyOut(Lane::kCommands, AddressOf(moments), int64_t(values.size() * sizeof(double)),
+                   values.data());
+  device_->Finish();
+  return values;
+}
+
+void DeviceEngine::SetMoments(Moments moments, std::span<const double> values) {
+  CHECK(!updating_ && int64_t(values.size()) == moments.size()) << values.size();
+  device_->CopyIn(Lane::kCommands, values.data(), int64_t(values.size_bytes()), AddressOf(moments));
+  device_->Finish();
+}
+
+// ---- An update ----
+
+void DeviceEngine::Begin(const BatchView& drawn) {
+  CHECK(!updating_ && int(drawn.rows()) == rows()) << "batch of " << drawn.rows();
+  turn_ = (turn_ + 1) % landings_.size();
+  landing().Begin();
+  const int32_t finite[] = {AllFinite(drawn) ? 1 : 0};
+  batch_finite_ = landing().Add(std::span<const int32_t>(finite));
+  workspace_.BeginList(kernels::BeginUpdate{});
+  updating_ = true;
+  stepped_.clear();
+  SetHostNumbers();
+}
+
+// The host's numbers travel with the inputs, because updates in flight still read the numbers from
+// before.
+void DeviceEngine::SetHostNumbers() {
+  for (const auto& [index, value] : host_numbers_) {
+    const double number[] = {value};
+    const double* from = landing().Add(std::span<const double>(number));
+    workspace_.Add(
+        Copy{.from = from, .to = &results_->numbers[index], .bytes = int64_t(sizeof(double))});
+  }
+}
+
+Transitions DeviceEngine::Take(const BatchView& batch) {
+  BatchPlaces places(batch, &landing());
+  return {.obs_frames = places.Of(batch.obs_frames),
+          .next_obs_frames = places.Of(batch.next_obs_frames),
+          .obs_vector = places.Of(batch.obs_vector),
+          .next_obs_vector = places.Of(batch.next_obs_vector),
+          .obs_privileged = places.Of(batch.obs_privileged),
+          .next_obs_privileged = places.Of(batch.next_obs_privileged),
+          .action = places.Of(batch.action),
+          .reward = places.Of(batch.reward),
+          .bootstrap = places.Of(batch.bootstrap),
+          .drawn_action = places.Of(batch.drawn_action),
+          .log_prob = places.Of(batch.log_prob)};
+}
+
+kernels::BeginUpdate DeviceEngine::FirstCommand() const {
+  kernels::BeginUpdate begin{.batch_finite = batch_finite_, .flags = &results_->flags};
+  CHECK(stepped_.size() <= size_t(kernels::BeginUpdate::kMostOptimisers)) << stepped_.size();
+  for (const nn::Adam* optimiser : stepped_) {
+    begin.optimisers[begin.optimiser_count++] = DeviceAdam::Of(*optimiser).state();
+  }
+  return begin;
+}
+
+void DeviceEngine::AddEndUpdate() {
+  kernels::EndUpdate end;
+  end.flags = &results_->flags;
+  end.finished = counter_;
+  for (const nn::Adam* optimiser : stepped_) {
+    for (size_t i = 0; i < optimiser->sets().size(); ++i) {
+      CHECK(end.set_count < kernels::EndUpdate::kMostUndone) << end.set_count << " sets";
+      end.sets[end.set_count] = AdamSetOf(*optimiser, i);
+      end.states[end.set_count] = DeviceAdam::Of(*optimiser).state();
+      end.counts[end.set_count++] = i == 0;
+    }
+  }
+  workspace_.Add(end);
+}
+
+// Runs the update, and copies its results to a free slot.
+void DeviceEngine::Submit() {
+  AddEndUpdate();
+  const CommandList& commands = workspace_.EndList(FirstCommand());
+  landing().Send();
+  recordings_.Run(commands);
+  landing().MarkUsed();
+  size_t slot = 0;
+  while (std::ranges::count(flying_, slot) > 0) ++slot;
+  flying_.push_back(slot);
+  const auto bytes = int64_t(offsetof(Results, numbers) + numbers_ * sizeof(double));
+  device_->CopyOut(Lane::kCommands, results_, bytes, slots_[slot].results);
+  device_->Mark(Lane::kCommands, slots_[slot].arrived.get());
+}
+
+std::optional<Engine::Outcome> DeviceEngine::End() {
+  CHECK(updating_);
+  updating_ = false;
+  Submit();
+  landing().Arrive();  // the batch may change from now on
+  if (flying_.size() <= in_flight_) return std::nullopt;
+  return TakeOutcome();
+}
+
+Engine::Outcome DeviceEngine::WaitOutcome() {
+  CHECK(!updating_ && !flying_.empty()) << "no update is in flight";
+  return TakeOutcome();
+}
+
+Engine::Outcome DeviceEngine::TakeOutcome() {
+  const Slot& slot = slots_[flying_.front()];
+  flying_.pop_front();
+  device_->Wait(*slot.arrived);
+  read_ = *slot.results;
+  const kernels::Flags flags = read_.flags;
+  if (flags.finite == 0) {
+    // The updates behind this one had no effect. They end before the halt does.
+    device_->Finish();
+    flying_.clear();
+    const int32_t halted = 0;
+    device_->CopyIn(Lane::kCommands, &halted, sizeof(halted), &results_->flags.halted);
+    device_->Finish();
+  }
+  return {.finite = flags.finite != 0,
+          .batch_finite = flags.batch_finite != 0,
+          .held = flags.held != 0};
+}
+
+// ---- Inputs ----
+
+void DeviceEngine::JoinColumns(Array left, Array right,
+                               std::span<const ObservationSpec::Range> ranges, Array joined) {
+  kernels::CopyColumns copy;
+  copy.rows = rows();
+  CHECK(int(ranges.size()) < kernels::CopyColumns::kMostPieces) << ranges.size() << " ranges";
+  const kernels::Target to{AddressOf(joined), nullptr};
+  const int width = ColumnsOf(joined), left_width = ColumnsOf(left);
+  int column = left_width;
+  if (left_width > 0) {
+    copy.Add({AddressOf(left), left_width, 0, left_width, to, width, 0, /*adds=*/false});
+  }
+  for (const ObservationSpec::Range& range : ranges) {
+    copy.Add({AddressOf(right), ColumnsOf(right), range.first, range.size, to, width, column,
+              /*adds=*/false});
+    column += range.size;
+  }
+  workspace_.Add(copy);
+}
+
+void DeviceEngine::SplitColumns(Array joined, Array left, Array right) {
+  kernels::CopyColumns copy;
+  copy.rows = rows();
+  int column = 0;
+  for (const Array part : {left, right}) {
+    const int width = ColumnsOf(part);
+    if (width == 0) continue;
+    copy.Add({AddressOf(joined), ColumnsOf(joined), column, width,
+              kernels::Target{AddressOf(part), nullptr}, width, 0, /*adds=*/false});
+    column += width;
+  }
+  workspace_.Add(copy);
+}
+
+void DeviceEngine::GatherLabels(Array observed, Array privileged,
+                                std::span<const LabelColumns> columns, float unit, Array labels) {
+  CHECK(int(columns.size()) <= kernels::GatherLabels::kMostLabels) << columns.size() << " labels";
+  kernels::GatherLabels gather;
+  gather.rows = rows();
+  gather.label_count = int(columns.size());
+  gather.unit = unit;
+  gather.labels = AddressOf(labels);
+  const auto column = [&](const LabelColumns::Column& of) -> kernels::GatherLabels::Column {
+    const Array from = of.observed ? observed : privileged;
+    return {AddressOf(from), ColumnsOf(from), int(of.at)};
+  };
+  for (size_t i = 0; i < columns.size(); ++i) {
+    gather.columns[i].number = column(columns[i].number);
+    if (columns[i].minus) gather.columns[i].minus = column(*columns[i].minus);
+  }
+  workspace_.Add(gather);
+}
+
+void DeviceEngine::Standardise(Array x, Moments moments, float variance_floor, Array y) {
+  workspace_.Add(kernels::Standardise{.rows = rows(),
+                                      .width = ColumnsOf(x),
+                                      .x = AddressOf(x),
+                                      .moments = AddressOf(moments),
+                                      .variance_floor = variance_floor,
+                                      .y = AddressOf(y)});
+}
+
+void DeviceEngine::AddToMoments(std::span<const float> vectors, Moments moments) {
+  const auto width = size_t(moments.size()) / 2;
+  CHECK(updating_);
+  workspace_.Add(kernels::AddToMoments{.rows = int(vectors.size() / width),
+                                       .width = int(width),
+                                       .vectors = landing().Add(vectors),
+                                       .moments = AddressOf(moments),
+                                       .flags = &results_->flags,
+                                       .finished = counter_});
+}
+
+// ---- Actions ----
+
+void DeviceEngine::SampleSquashedGaussian(Array mean, Array log_std, Random* random,
+                                          const SquashedSample& sample) {
+  const int actions = ColumnsOf(mean);
+  const std::vector<double> normals = alone_.Normals(rows(), actions, random);
+  const std::vector<float> noise(normals.begin(), normals.end());
+  workspace_.Add(
+      kernels::SampleSquashedGaussian{.rows = rows(),
+                                      .actions = actions,
+                                      .mean = AddressOf(mean),
+                                      .log_std = AddressOf(log_std),
+                                      .noise = landing().Add(std::span<const float>(noise)),
+                                      .scaled_noise = AddressOf(sample.scaled_noise),
+                                      .action = AddressOf(sample.action),
+                                      .log_prob = AddressOf(sample.log_prob)});
+}
+
+void DeviceEngine::SquashedGaussianBackward(const SquashedSample& sample, Array action_gradient,
+                                            Number temperature, Array mean_gradient,
+                                            Array log_std_gradient) {
+  workspace_.Add(
+      kernels::SquashedGaussianBackward{.rows = rows(),
+                                        .actions = ColumnsOf(sample.action),
+                                        .scaled_noise = AddressOf(sample.scaled_noise),
+                                        .action = AddressOf(sample.action),
+                                        .action_gradient = AddressOf(action_gradient),
+                                        .temperature = AddressOf(temperature),
+                                        .mean_gradient = AddressOf(mean_gradient),
+                                        .log_std_gradient = AddressOf(log_std_gradient)});
+}
+
+void DeviceEngine::SquashedGaussianFigures(const SquashedSample& sample, Number entropy,
+                                           Number saturation) {
+  workspace_.Add(kernels::SquashedGaussianFigures{.rows = rows(),
+                                                  .actions = ColumnsOf(sample.action),
+                                                  .log_prob = AddressOf(sample.log_prob),
+                                                  .action = AddressOf(sample.action),
+                                                  .entropy = AddressOf(entropy),
+                                                  .saturation = AddressOf(saturation)});
+}
+
+void DeviceEngine::AddClippedNoise(Array action, double sigma, double limit, Random* random,
+                                   Array noisy) {
+  const std::vector<double> normals = alone_.Normals(rows(), ColumnsOf(action), random);
+  workspace_.Add(kernels::AddClippedNoise{.n = action.size(),
+                                          .sigma = sigma,
+                                          .limit = limit,
+                                          .action = AddressOf(action),
+                                          .noise = landing().Add(std::span<const double>(normals)),
+                                          .noisy = AddressOf(noisy)});
+}
+
+// ---- Targets and losses ----
+
+void DeviceEngine::Targets(const TargetTerms& terms, Array y) {
+  kernels::Targets targets{.rows = rows(),
+                           .critics = int(terms.next_q.size()),
+                           .reward = AddressOf(terms.reward),
+                           .bootstrap = AddressOf(terms.bootstrap)};
+  SetAddresses(terms.next_q, targets.next_q);
+  targets.next_log_prob = AddressOf(terms.next_log_prob);
+  targets.temperature = AddressOf(terms.temperature);
+  targets.reward_scale = terms.reward_scale;
+  targets.discount = terms.discount;
+  targets.low = terms.bounds.low;
+  targets.high = terms.bounds.high;
+  targets.y = AddressOf(y);
+  workspace_.Add(targets);
+}
+
+void DeviceEngine::AverageCopies(int copies, int shifts, Array y) {
+  if (copies == 1) return;
+  workspace_.Add(kernels::AverageCopies{.rows = rows(),
+                                        .copies = copies,
+                                        .averaged = shifts == 0 ? copies : shifts,
+                                        .y = AddressOf(y)});
+}
+
+void DeviceEngine::CriticLoss(std::span<const Array> q, Array y, std::span<const Array> q_gradients,
+                              const CriticNumbers& figures) {
+  CHECK(q.size() == q_gradients.size()) << q.size();
+  kernels::CriticLoss loss;
+  loss.rows = rows();
+  loss.critics = int(q.size());
+  SetAddresses(q, loss.q);
+  SetAddresses(q_gradients, loss.q_gradient);
+  loss.y = AddressOf(y);
+  loss.figures = FiguresOf(figures);
+  workspace_.Add(loss);
+}
+
+void DeviceEngine::EntropyActorLoss(Array log_prob, std::span<const Array> q, Number temperature,
+                                    std::span<const Array> q_gradients, Number loss) {
+  CHECK(q.size() == 2 && q_gradients.size() == 2) << q.size();
+  workspace_.Add(kernels::EntropyActorLoss{.rows = rows(),
+                                           .log_prob = AddressOf(log_prob),
+                                           .q0 = AddressOf(q[0]),
+                                           .q1 = AddressOf(q[1]),
+                                           .temperature = AddressOf(temperature),
+                                           .q0_gradient = AddressOf(q_gradients[0]),
+                                           .q1_gradient = AddressOf(q_gradients[1]),
+                                           .loss = AddressOf(loss)});
+}
+
+void DeviceEngine::DeterministicActorLoss(Array q, Array mean, Array action, double mean_penalty,
+                                          Array q_gradient, Number loss, Number saturation) {
+  workspace_.Add(kernels::DeterministicActorLoss{.rows = rows(),
+                                                 .actions = ColumnsOf(action),
+                                                 .q = AddressOf(q),
+                                                 .mean = AddressOf(mean),
+                                                 .action = AddressOf(action),
+                                                 .mean_penalty = mean_penalty,
+                                                 .q_gradient = AddressOf(q_gradient),
+                                                 .loss = AddressOf(loss),
+                                                 .saturation = AddressOf(saturation)});
+}
+
+void DeviceEngine::LabelLoss(Array y, Array labels, float weight, float unit, Array gradient,
+                             Number mean_square) {
+  workspace_.Add(kernels::LabelLoss{.n = y.size(),
+                                    .y = AddressOf(y),
+                                    .labels = AddressOf(labels),
+                                    .weight = weight,
+                                    .unit = unit,
+                                    .gradient = {AddressOf(gradient), nullptr},
+                                    .mean_square = AddressOf(mean_square)});
+}
+
+void DeviceEngine::ClippedPolicyLoss(const ClippedPolicyTerms&, nn::ParameterSet*, Array, Array,
+                                     const ClippedPolicyNumbers&) {
+  CHECK(false) << "a device does not compute the clipped loss";
+}
+
+void DeviceEngine::GaussianFigures(const nn::ParameterSet&, Number, Number) {
+  CHECK(false) << "a device does not compute a Gaussian without tanh";
+}
+
+void DeviceEngine::OnHost(std::span<const Array>, std::span<const Array>, const HostOperation&) {
+  CHECK(false) << "a device runs no operations on the host";
+}
+
+void DeviceEngine::Mean(Array values, Number mean) {
+  workspace_.Add(
+      kernels::Mean{.n = values.size(), .values = AddressOf(values), .mean = AddressOf(mean)});
+}
+
+// ---- Temperature ----
+
+void DeviceEngine::Temperature(const nn::ParameterSet& log_temperature, Number temperature) {
+  const DeviceParameters& parameters = Use(log_temperature, /*changes=*/false, nullptr);
+  workspace_.Add(kernels::Temperature{.log_temperature = parameters.values(),
+                                      .temperature = AddressOf(temperature)});
+}
+
+void DeviceEngine::TemperatureLoss(Number temperature, Number entropy, float target_entropy,
+                                   Number loss) {
+  workspace_.Add(kernels::TemperatureLoss{.temperature = AddressOf(temperature),
+                                          .entropy = AddressOf(entropy),
+                                          .target_entropy = target_entropy,
+                                          .loss = AddressOf(loss)});
+}
+
+void DeviceEngine::StepTemperature(Number loss, double least, nn::ParameterSet* log_temperature,
+                                   nn::Adam* optimiser) {
+  Use(*log_temperature, /*changes=*/true, nullptr);
+  const DeviceAdam& adam = Use(optimiser);
+  stepped_.push_back(optimiser);
+  workspace_.Add(
+      kernels::StepTemperature{.set = AdamSetOf(*optimiser, 0),
+                               .options = OptionsOf(*optimiser),
+                               .loss = AddressOf(loss),
+                               .least = float(std::log(least)),  // log(0) is -inf: no bound
+                               .state = adam.state(),
+                               .flags = &results_->flags});
+}
+
+// ---- The flag, steps and moves ----
+
+void DeviceEngine::RequireFinite(Number number) {
+  kernels::RequireFinite require{.count = 1};
+  require.numbers[0] = AddressOf(number);
+  require.flags = &results_->flags;
+  workspace_.Add(require);
+}
+
+void DeviceEngine::SetRateFactor(Number factor, nn::Adam* optimiser) {
+  for (const nn::ParameterSet* set : optimiser->sets()) Use(*set, /*changes=*/false, nullptr);
+  Use(optimiser).rate_factor = AddressOf(factor);
+}
+
+void DeviceEngine::Gather(nn::Adam* optimiser, Number gradient_squares) {
+  DeviceAdam& adam = Use(optimiser);
+  adam.squares = AddressOf(gradient_squares);
+  kernels::SumOfSquares sum;
+  for (const nn::ParameterSet* set : optimiser->sets()) {
+    const DeviceParameters& parameters = DeviceParameters::Of(*set);
+    CHECK(sum.set_count < kernels::kMostSets);
+    sum.sets[sum.set_count++] = {parameters.gradients(), parameters.layout().trained_size()};
+  }
+  sum.partials = adam.partials;
+  sum.finished = counter_;
+  sum.squares = AddressOf(gradient_squares);
+  workspace_.Add(sum);
+}
+
+void DeviceEngine::HoldSteps(Number number, double limit) {
+  workspace_.Add(
+      kernels::HoldSteps{.number = AddressOf(number), .limit = limit, .flags = &results_->flags});
+}
+
+void DeviceEngine::Step(nn::Adam* optimiser, std::span<nn::Module* const>, NextUse) {
+  DeviceAdam& adam = Use(optimiser);
+  stepped_.push_back(optimiser);
+  kernels::Adam step;
+  for (size_t i = 0; i < optimiser->sets().size(); ++i) {
+    const DeviceParameters& parameters = Use(*optimiser->sets()[i], /*changes=*/true, nullptr);
+    CHECK(step.set_count < kernels::kMostSets);
+    step.gradients[step.set_count] = parameters.gradients();
+    step.sets[step.set_count++] = AdamSetOf(*optimiser, i);
+  }
+  step.options = OptionsOf(*optimiser);
+  step.squares = adam.squares;
+  step.state = adam.state();
+  step.flags = &results_->flags;
+  step.finished = counter_;
+  workspace_.Add(step);
+}
+
+void DeviceEngine::MoveTowards(float tau, std::span<const nn::Following> targets) {
+  kernels::MoveTowards move;
+  for (const nn::Following& following : targets) {
+    const DeviceParameters& online =
+        Use(following.online->parameters(), /*changes=*/false, nullptr);
+    const DeviceParameters& target = Use(following.target->parameters(), /*changes=*/true, nullptr);
+    CHECK(move.set_count < kernels::kMostSets);
+    move.sets[move.set_count++] = {online.layout().size(), online.layout().trained_size(),
+                                   online.values(), target.values(), target.rounded()};
+  }
+  move.tau = tau;
+  move.flags = &results_->flags;
+  workspace_.Add(move);
+}
+
+void DeviceEngine::MoveAverage(float rate, const nn::ParameterSet& online,
+                               nn::ParameterSet* average) {
+  const DeviceParameters& from = Use(online, /*changes=*/false, nullptr);
+  const DeviceParameters& to = Use(*average, /*changes=*/true, &from.layout());
+  kernels::MoveTowards move;
+  move.set_count = 1;
+  move.sets[0] = {from.layout().size(), from.layout().trained_size(), from.values(), to.values(),
+                  nullptr};
+  move.tau = rate;
+  move.flags = &results_->flags;
+  workspace_.Add(move);
+}
+
+// ---- Mirrors ----
+
+// `layout`: of a set without a mirror; null: the host's order.
+DeviceParameters& DeviceEngine::Use(const nn::ParameterSet& set, bool changes,
+                                    const ParameterLayout* layout) {
+  if (set.mirror() == nullptr) {
+    DeviceParameters::Attach(&workspace_, layout != nullptr ? *layout : ParameterLayout(set),
+                             nn::ParameterSet::Use::kInference, set);
+  }
+  set.UseMirror(changes);
+  return DeviceParameters::Of(set);
+}
+
+DeviceAdam& DeviceEngine::Use(nn::Adam* optimiser) {
+  if (optimiser->mirror() == nullptr) {
+    optimiser->Attach(std::make_unique<DeviceAdam>(&workspace_, *optimiser));
+  }
+  optimiser->UseMirror();
+  return DeviceAdam::Of(*optimiser);
+}
+
+kernels::AdamSet DeviceEngine::AdamSetOf(const nn::Adam& optimiser, size_t i) const {
+  const DeviceParameters& parameters = DeviceParameters::Of(*optimiser.sets()[i]);
+  const DeviceAdam::Arrays& arrays = DeviceAdam::Of(optimiser).arrays()[i];
+  return {.size = parameters.layout().trained_size(),
+          .value = parameters.values(),
+          .m = arrays.m,
+          .v = arrays.v,
+          .former_value = arrays.former_value,
+          .former_m = arrays.former_m,
+          .former_v = arrays.former_v,
+          .rounded = parameters.rounded()};
+}
+
+kernels::AdamOptions DeviceEngine::OptionsOf(const nn::Adam& optimiser) const {
+  const nn::Adam::Options& options = optimiser.options();
+  return {.rate = options.rate,
+          .epsilon = options.epsilon,
+          .max_norm = options.max_norm,
+          .rate_factor = DeviceAdam::Of(optimiser).rate_factor};
+}
+
+}  // namespace shoal::learner::device

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "learner/device/device_parameters.h"
+
+#include "common/base/check.h"
+#include "common/nn/bf16.h"
+
+namespace shoal::learner::device {
+namespace {
+
+// Copies in the order of the commands, and waits.
+void CopyInNow(Device* device, const void* host, int64_t bytes, void* to) {
+  device->CopyIn(Lane::kCommands, host, bytes, to);
+  device->Finish();
+}
+void CopyOutNow(Device* device, const void* from, int64_t bytes, void* host) {
+  device->CopyOut(Lane::kCommands, from, bytes, host);
+  device->Finish();
+}
+
+int64_t SumBlocks(const nn::Adam& optimiser) {
+  int64_t blocks = 0;
+  for (const nn::ParameterSet* set : optimiser.sets()) {
+    blocks += kernels::BlocksForElements(DeviceParameters::Of(*set).layout().trained_size());
+  }
+  return blocks;
+}
+
+int64_t Bytes(const std::vector<float>& values) { return int64_t(values.size() * sizeof(float)); }
+
+}  // namespace
+
+DeviceParameters::DeviceParameters(Workspace* workspace, const ParameterLayout& layout,
+                                   bool trained)
+    : workspace_(workspace),
+      layout_(layout),
+      values_(workspace->New<float>(layout.size())),
+      rounded_(workspace->compute_type() == Type::kBf16 ? workspace->New<uint16_t>(layout.size())
+                                                        : nullptr),
+      gradients_(trained ? workspace->New<float>(layout.trained_size()) : nullptr) {}
+
+DeviceParameters& DeviceParameters::Of(const nn::ParameterSet& set) {
+  auto* mirror = dynamic_cast<DeviceParameters*>(set.mirror());
+  CHECK(mirror != nullptr) << "parameters of another engine";
+  return *mirror;
+}
+
+DeviceParameters& DeviceParameters::Attach(Workspace* workspace, const ParameterLayout& layout,
+                                           nn::ParameterSet::Use use, const nn::ParameterSet& set) {
+  set.Attach(std::make_unique<DeviceParameters>(workspace, layout,
+                                                use == nn::ParameterSet::Use::kTraining));
+  return Of(set);
+}
+
+void DeviceParameters::Fetch(float* values) {
+  std::vector<float> ordered(size_t(layout_.size()));
+  CopyOutNow(workspace_->device(), values_, Bytes(ordered), ordered.data());
+  layout_.ToHost(ordered.data(), /*statistics=*/true, values);
+}
+
+void DeviceParameters::Send(const float* values) {
+  std::vector<float> ordered(size_t(layout_.size()));
+  layout_.ToDevice(values, /*statistics=*/true, ordered.data());
+  CopyInNow(workspace_->device(), ordered.data(), Bytes(ordered), values_);
+  if (rounded_ == nullptr) return;
+  std::vector<uint16_t> rounded(ordered.size());
+  nn::FloatsToBf16(ordered.data(), layout_.size(), rounded.data());
+  CopyInNow(workspace_->device(), rounded.data(), int64_t(rounded.size() * sizeof(uint16_t)),
+            rounded_);
+}
+
+Tensor DeviceParameters::Find(const std::string& name) const {
+  const int64_t offset = layout_.OffsetOf(name);
+  return {values_ + offset, rounded_ == nullptr ? nullptr : rounded_ + offset,
+          gradients_ == nullptr ? nullptr : gradients_ + offset};
+}
+
+DeviceAdam::DeviceAdam(Workspace* workspace, const nn::Adam& optimiser)
+    : partials(workspace->New<double>(SumBlocks(optimiser))),
+      workspace_(workspace),
+      state_(workspace->New<kernels::AdamState>(1)) {
+  for (const nn::ParameterSet* set : optimiser.sets()) {
+    const DeviceParameters& parameters = DeviceParameters::Of(*set);
+    const int64_t size = parameters.layout().trained_size();
+    sets_.push_back(&parameters);
+    const auto zeros = [&] { return workspace->New<float>(size); };
+    arrays_.push_back({zeros(), zeros(), zeros(), zeros(), zeros()});
+  }
+}
+
+DeviceAdam& DeviceAdam::Of(const nn::Adam& optimiser) {
+  auto* mirror = dynamic_cast<DeviceAdam*>(optimiser.mirror());
+  CHECK(mirror != nullptr) << "optimiser of another engine";
+  return *mirror;
+}
+
+uint64_t DeviceAdam::Fetch(std::span<const Moments> sets) {
+  Device* const device = workspace_->device();
+  for (size_t i = 0; i < sets.size(); ++i) {
+    const ParameterLayout& layout = sets_[i]->layout();
+    std::vector<float> ordered(size_t(layout.trained_size()));
+    CopyOutNow(device, arrays_[i].m, Bytes(ordered), ordered.data());
+    layout.ToHost(ordered.data(), /*statistics=*/false, sets[i].m);
+    CopyOutNow(device, arrays_[i].v, Bytes(ordered), ordered.data());
+    layout.ToHost(ordered.data(), /*statistics=*/false, sets[i].v);
+  }
+  kernels::AdamState state;
+  CopyOutNow(device, state_, sizeof(state), &state);
+  return uint64_t(state.steps);
+}
+
+void DeviceAdam::Send(std::span<const Moments> sets, uint64_t steps) {
+  Device* const device = workspace_->device();
+  for (size_t i = 0; i < sets.size(); ++i) {
+    const ParameterLayout& layout = sets_[i]->layout();
+    std::vector<float> ordered(size_t(layout.trained_size()));
+    layout.ToDevice(sets[i].m, /*statistics=*/false, ordered.data());
+    CopyInNow(device, ordered.data(), Bytes(ordered), arrays_[i].m);
+    layout.ToDevice(sets[i].v, /*statistics=*/false, ordered.data());
+    CopyInNow(device, ordered.data(), Bytes(ordered), arrays_[i].v);
+  }
+  const kernels::AdamState state{.steps = int64_t(steps), .taken = 0};
+  CopyInNow(device, &state, sizeof(state), state_);
+}
+
+}  // namespace shoal::learner::device

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// An encoder of convolutions on a device. Maps are (B, h, w, C) with padded channels.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/nn/networks.h"
+#include "learner/device/device_parameters.h"
+#include "learner/device/modules/device_features.h"
+
+namespace shoal::learner::device {
+
+// Throws Error (kUsage) that names the configured encoder, `encoder`, if the plan has layers other
+// than pixels and convolutions with ReLU.
+void CheckEncoder(const nn::NetworkPlan& plan, const std::string& encoder);
+
+class DeviceEncoder final : public nn::EncoderNetwork {
+ public:
+  // Attaches a mirror to the parameters.
+  DeviceEncoder(Workspace* workspace, const nn::NetworkPlan& plan, nn::ParameterSet::Use use,
+                nn::ParameterSet* parameters);
+
+  const nn::Features& features() const override { return *features_; }
+  void Refresh() override {}  // the mirror is sent when it is used
+  void Forward(nn::Frames frames, nn::Statistics statistics) override;
+  void Backward() override;
+
+ private:
+  struct Layer {
+    ConvolutionShape shape;
+    Tensor weight, bias;
+    const void* source;  // map that the layer reads, and its gradient (null: none)
+    void* source_gradient;
+    void *output, *gradient;  // map; gradient: null in inference
+  };
+
+  void Build(const nn::NetworkPlan& plan, const DeviceParameters& parameters, bool trained);
+  void* NewMap(int64_t numbers) const;
+  void MaskLastGradient();
+
+  Workspace* const workspace_;
+  nn::ParameterSet* const parameters_;
+  const nn::LayerPlan pixels_;
+  void* input_;  // (B, h, w, C) output of the pixels layer
+  std::vector<Layer> layers_;
+  std::optional<DeviceFeatures> features_;
+  kernels::ColumnSums last_sums_;  // over the last map's pixels
+};
+
+}  // namespace shoal::learner::device

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "learner/device/device_agent.h"
+
+#include <gmock/gmock.h>
+
+#include "common/base/error.h"
+#include "tests/learner/device/device_fixture.h"
+
+namespace shoal::learner::device {
+namespace {
+
+std::string Refusal(const Config& config, const ObservationSpec& spec) {
+  try {
+    CheckComputes(config, spec);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.exit_code(), int(ErrorKind::kUsage));
+    return error.what();
+  }
+  return "";
+}
+
+TEST(DeviceAgent, RefusesWhatADeviceDoesNotCompute) {
+  Config config = SmallConfig();
+  EXPECT_EQ(Refusal(config, SmallSpec()), "");
+  config.learner.algorithm = "ppo";
+  EXPECT_EQ(Refusal(config, SmallSpec()),
+            "learner.algorithm = ppo: a device does not compute this algorithm, expected sac | td3 "
+            "| ddpg");
+  config = SmallConfig();
+  config.network.filters.clear();
+  config.network.strides.clear();
+  config.network.encoder = "spatial_softmax";
+  ObservationSpec spec = SmallSpec();
+  spec.height = spec.width = 64;
+  EXPECT_EQ(Refusal(config, spec),
+            "network.encoder = spatial_softmax: a device computes encoders of convolutions alone, "
+            "expected compact | drq | mrq | nature");
+  WithoutPixels(&spec);
+  EXPECT_EQ(Refusal(config, spec), "");
+}
+
+TEST(DeviceAgent, LearnsTheBandit) {
+  HostDevice device;
+  const auto make = [&](const Config& config, const ObservationSpec& spec,
+                        nn::Precision precision) {
+    return MakeDeviceAgent(config, spec, precision, &device);
+  };
+  EXPECT_LT(BanditError(Config(), make), 0.1f);
+}
+
+}  // namespace
+}  // namespace shoal::learner::device

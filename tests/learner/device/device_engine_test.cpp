@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+// Agents that compute with a device, in host memory, beside agents of the CPU's engine with the
+// same batches and random draws.
+#include "learner/device/device_engine.h"
+
+#include <gmock/gmock.h>
+
+#include <iterator>
+#include <vector>
+
+#include "tests/learner/device/device_fixture.h"
+
+namespace shoal::learner::device {
+namespace {
+
+using testing::IsEmpty;
+using testing::SizeIs;
+
+constexpr uint64_t kUpdates = 200;
+
+class DeviceEngineTest : public testing::TestWithParam<AgentCase> {
+ protected:
+  DeviceEngineTest() { GetParam().set(&config_, &spec_); }
+
+  RandomBatch Batch(uint64_t key) const {
+    BatchOptions options{.batch = config_.learner.batch, .copies = config_.replay.copies};
+    for (const BlockSpec& block : spec_.blocks) {
+      if (!block.observed) options.privileged.push_back(block.name);
+    }
+    return RandomBatch(spec_, options, key);
+  }
+
+  // Compares with the CPU's engine in f32: first losses, and networks and moments after all
+  // updates.
+  void ExpectLikeTheCpu(nn::Precision precision, double first, double later, double moments) {
+    OnCpu cpu(config_, spec_, nn::Precision::kF32);
+    OnDevice device(config_, spec_, precision);
+    ExpectNear(device.agent->AllTensors(), cpu.agent->AllTensors(), 1e-12, 1e-12);
+    for (uint64_t u = 0; u < kUpdates; ++u) {
+      const RandomBatch batch = Batch(u);
+      const UpdateOutcome expected = cpu.agent->Update(batch.View());
+      const UpdateOutcome outcome = device.agent->Update(batch.View());
+      ASSERT_TRUE(expected.finite && outcome.finite) << u;
+      if (u == 0) ExpectFigures(outcome, expected, first);
+    }
+    ExpectNear(device.agent->AllTensors(), cpu.agent->AllTensors(), later, moments);
+    EXPECT_LE(device.engine.recorded(), 8);
+  }
+  static void ExpectFigures(const UpdateOutcome& outcome, const UpdateOutcome& expected,
+                            double tolerance) {
+    const auto &some = outcome.figures.entries(), &other = expected.figures.entries();
+    ASSERT_EQ(some.size(), other.size());
+    for (size_t i = 0; i < some.size(); ++i) {
+      ASSERT_EQ(some[i].figure, other[i].figure);
+      EXPECT_NEAR(some[i].value, other[i].value, tolerance * (1 + std::abs(other[i].value)))
+          << some[i].figure->name;
+    }
+  }
+
+  Config config_ = SmallConfig();
+  ObservationSpec spec_ = SmallSpec();
+};
+
+TEST_P(DeviceEngineTest, LearnsLikeTheCpuInF32) {
+  ExpectLikeTheCpu(nn::Precision::kF32, 1e-4, 1e-3, 1e-2);
+}
+
+// Rounding differs from f32 in every update, so the distance grows.
+TEST_P(DeviceEngineTest, LearnsInBf16LikeTheCpuInF32) {
+  ExpectLikeTheCpu(nn::Precision::kBf16, 2e-2, 6e-2, 0);
+}
+
+// Each kind of update is recorded once for each of the two landings, and then replayed.
+TEST_P(DeviceEngineTest, RepeatsItselfBitForBitWithUpdatesInFlight) {
+  OnDevice waiting(config_, spec_, nn::Precision::kBf16),
+      flying(config_, spec_, nn::Precision::kBf16, 2);
+  std::vector<UpdateOutcome> outcomes;
+  const auto keep = [&](std::vector<UpdateOutcome> known) {
+    std::ranges::move(known, std::back_inserter(outcomes));
+  };
+  for (uint64_t u = 0; u < 12; ++u) {
+    const RandomBatch batch = Batch(u);
+    waiting.agent->Update(batch.View());
+    keep(flying.agent->Submit(batch.View(), [](UpdateStage) {}));
+    EXPECT_THAT(outcomes, SizeIs(u < 2 ? 0 : u - 1));
+  }
+  const int64_t recorded = flying.engine.recorded();
+  for (uint64_t u = 12; u < 24; ++u) {
+    const RandomBatch batch = Batch(u);
+    waiting.agent->Update(batch.View());
+    keep(flying.agent->Submit(batch.View(), [](UpdateStage) {}));
+  }
+  keep(flying.agent->Finish());
+  EXPECT_THAT(outcomes, SizeIs(24));
+  EXPECT_EQ(flying.engine.recorded(), recorded);
+  EXPECT_THAT(Differences(flying.agent->AllTensors(), waiting.agent->AllTensors()), IsEmpty());
+}
+
+// A number that is not finite, in the batch or in a loss, leaves no trace, and neither do the
+// updates in flight behind it.
+TEST_P(DeviceEngineTest, AnUpdateThatIsNotFiniteHasNoEffect) {
+  OnDevice clean(config_, spec_, nn::Precision::kF32),
+      spoilt(config_, spec_, nn::Precision::kF32, 2);
+  const auto submit = [](OnDevice* side, const RandomBatch& batch) {
+    return side->agent->Submit(batch.View(), [](UpdateStage) {});
+  };
+  uint64_t key = 0;
+  for (const bool in_batch : {true, false}) {
+    for (int u = 0; u < 3; ++u, ++key) {
+      clean.agent->Update(Batch(key).View());
+      submit(&spoilt, Batch(key));
+    }
+    const RandomBatch bad = Batch(100);
+    bad.View().reward[2] = in_batch ? NAN : 1e25f;
+    submit(&spoilt, bad);
+    submit(&spoilt, Batch(101));
+    const std::vector<UpdateOutcome> known = submit(&spoilt, Batch(102));
+    ASSERT_THAT(known, SizeIs(1));
+    EXPECT_FALSE(known[0].finite);
+    EXPECT_EQ(spoilt.agent->updates(), clean.agent->updates());
+    EXPECT_THAT(spoilt.agent->Finish(), IsEmpty());
+    EXPECT_THAT(Differences(spoilt.agent->AllTensors(), clean.agent->AllTensors()), IsEmpty());
+  }
+}
+
+TEST_P(DeviceEngineTest, CheckpointsMoveBetweenDeviceAndCpu) {
+  constexpr auto kF32 = nn::Precision::kF32;
+  OnDevice first(config_, spec_, kF32);
+  OnCpu expected(config_, spec_, kF32);
+  for (uint64_t u = 0; u < 5; ++u) {
+    first.agent->Update(Batch(u).View());
+    expected.agent->Update(Batch(u).View());
+  }
+  OnCpu second(config_, spec_, kF32);
+  const nn::TensorMap written = first.agent->AllTensors();
+  second.agent->Restore(written, "test");
+  EXPECT_THAT(Differences(second.agent->AllTensors(), written), IsEmpty());
+  OnDevice third(config_, spec_, kF32);
+  for (uint64_t u = 5; u < 10; ++u) {
+    second.agent->Update(Batch(u).View());
+    expected.agent->Update(Batch(u).View());
+  }
+  third.agent->Restore(second.agent->AllTensors(), "test");
+  EXPECT_THAT(Differences(third.agent->AllTensors(), second.agent->AllTensors()), IsEmpty());
+  for (uint64_t u = 10; u < 15; ++u) {
+    third.agent->Update(Batch(u).View());
+    expected.agent->Update(Batch(u).View());
+  }
+  EXPECT_EQ(third.agent->updates(), 15u);
+  ExpectNear(third.agent->AllTensors(), expected.agent->AllTensors(), 1e-3, 1e-2);
+}
+
+void SetEncoder(const char* encoder, int side, Config* config, ObservationSpec* spec) {
+  config->network.encoder = encoder;
+  config->network.filters.clear();
+  config->network.strides.clear();
+  spec->height = spec->width = side;
+}
+
+const AgentCase kAgentCases[] = {
+    {"sac", [](Config*, ObservationSpec*) {}},
+    {"sac_vectors", [](Config*, ObservationSpec* spec) { WithoutPixels(spec); }},
+    {"sac_drq",
+     [](Config* config, ObservationSpec* spec) {
+       SetEncoder("drq", 16, config, spec);
+       config->learner.actor_period = 2;
+       config->replay.copies = 2;
+     }},
+    {"sac_nature",
+     [](Config* config, ObservationSpec* spec) {
+       SetEncoder("nature", 36, config, spec);
+       config->network.features = 24;
+     }},
+    {"sac_separate",
+     [](Config* config, ObservationSpec*) {
+       config->network.encoders = "separate";
+       config->network.target_encoder = true;
+       config->learner.actor_period = 2;
+       config->learner.target_period = 2;
+       config->learner.max_grad_norm = 0.5;
+       config->network.log_std = "clamped";
+     }},
+    {"sac_asymmetric",
+     [](Config* config, ObservationSpec* spec) {
+       spec->blocks.push_back({"object", 3, /*observed=*/false});
+       config->sac.critic_blocks = true;
+       config->sac.aux = {"object"};
+       config->learner.normalise_vectors = true;
+     }},
+    {"sac_plain_layers",
+     [](Config* config, ObservationSpec*) {
+       config->network.layer_norm = false;
+       config->network.trunk = "relu";
+       config->network.activation = "tanh";
+       config->network.hidden = {10, 12, 9};
+     }},
+    {"td3", [](Config* config, ObservationSpec*) { config->learner.algorithm = "td3"; }},
+    {"ddpg",
+     [](Config* config, ObservationSpec*) {
+       config->learner.algorithm = "ddpg";
+       config->learner.mean_penalty = 0.1;
+       config->learner.normalise_vectors = true;
+     }},
+};
+
+INSTANTIATE_TEST_SUITE_P(Of, DeviceEngineTest, testing::ValuesIn(kAgentCases),
+                         [](const auto& test) { return test.param.name; });
+
+}  // namespace
+}  // namespace shoal::learner::device

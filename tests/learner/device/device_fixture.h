@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// Agents that compute with a device in host memory, beside agents of the CPU's engine.
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <ostream>
+#include <string>
+
+#include "learner/device/device_engine.h"
+#include "learner/device/host_device.h"
+#include "learner/engine/cpu_engine.h"
+#include "tests/learner/agent/agent_fixture.h"
+
+namespace shoal::learner::device {
+
+struct AgentCase {
+  std::string name;
+  std::function<void(Config*, ObservationSpec*)> set;
+};
+
+inline void PrintTo(const AgentCase& each, std::ostream* out) { *out << each.name; }
+
+inline void WithoutPixels(ObservationSpec* spec) {
+  spec->cameras.clear();
+  spec->channels = spec->height = spec->width = 0;
+  spec->stack = 1;
+}
+
+// An agent with an engine on a device in host memory.
+struct OnDevice {
+  OnDevice(const Config& config, const ObservationSpec& spec, nn::Precision precision,
+           int in_flight = 0)
+      : engine(&device, precision, config.learner.batch, in_flight),
+        agent(FindAlgorithm(config.learner.algorithm).make(config, spec, &engine)) {}
+
+  HostDevice device;
+  DeviceEngine engine;
+  std::unique_ptr<Agent> agent;
+};
+
+struct OnCpu {
+  OnCpu(const Config& config, const ObservationSpec& spec, nn::Precision precision)
+      : engine(precision, config.learner.batch, &alone),
+        agent(FindAlgorithm(config.learner.algorithm).make(config, spec, &engine)) {}
+
+  nn::Replica alone;
+  CpuEngine engine;
+  std::unique_ptr<Agent> agent;
+};
+
+// Euclidean distance of two tensors, relative to the length of the second one.
+inline double Distance(std::span<const float> some, std::span<const float> other) {
+  double squares = 0, length = 0;
+  for (size_t i = 0; i < some.size(); ++i) {
+    squares += (double(some[i]) - other[i]) * (double(some[i]) - other[i]);
+    length += double(other[i]) * other[i];
+  }
+  return std::sqrt(squares / std::max(length, 1e-12));
+}
+
+// The network that a tensor belongs to, with its moments apart: "actor", "adam.m.actor".
+inline std::string NetworkOf(const std::string& name) {
+  const size_t first = name.starts_with("adam.") ? std::string("adam.m.").size() : 0;
+  return name.substr(0, name.find('.', first));
+}
+
+// Expects equal shapes and equal counters, and networks within the tolerance. `moments`: the
+// tolerance of an optimiser's moments; 0: not compared.
+inline void ExpectNear(const nn::TensorMap& some, const nn::TensorMap& other, double tolerance,
+                       double moments) {
+  ASSERT_EQ(some.size(), other.size());
+  std::map<std::string, std::pair<std::vector<float>, std::vector<float>>> networks;
+  for (const auto& [name, tensor] : other) {
+    ASSERT_TRUE(some.contains(name)) << name;
+    ASSERT_EQ(some.at(name).shape, tensor.shape) << name;
+    if (tensor.dtype == "F32") {
+      auto& [own, others] = networks[NetworkOf(name)];
+      std::ranges::copy(Floats(some, name), std::back_inserter(own));
+      std::ranges::copy(Floats(other, name), std::back_inserter(others));
+    } else if (!name.ends_with(".moments")) {
+      EXPECT_EQ(some.at(name).data, tensor.data) << name;
+    }
+  }
+  for (const auto& [name, values] : networks) {
+    const bool is_moments = name.starts_with("adam.");
+    if (is_moments && moments == 0) continue;
+    EXPECT_LT(Distance(values.first, values.second), is_moments ? moments : tolerance) << name;
+  }
+}
+
+}  // namespace shoal::learner::device
