@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/nn/layer_context.h"
@@ -39,7 +40,7 @@ inline size_t Count(const Parameter& parameter) {
   return count;
 }
 
-inline std::span<const float> GradientOf(ParameterSet& set, const std::string& name) {
+inline std::span<const float> GradientOf(ParameterSet& set, std::string_view name) {
   const Parameter parameter = set.Find(name);
   return {parameter.gradient(), Count(parameter)};
 }
