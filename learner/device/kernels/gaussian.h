@@ -50,7 +50,7 @@ struct GaussianHeadBackward {
   bool clamped = false;
   const float *output = nullptr, *log_std = nullptr;
   const float *mean_gradient = nullptr, *log_std_gradient = nullptr;
-  Target output_gradient;
+  Target output_gradient = {};
 
   int blocks() const { return BlocksForElements(int64_t{rows} * actions); }
   bool operator==(const GaussianHeadBackward&) const = default;
@@ -99,7 +99,7 @@ struct TanhHeadBackward {
   int64_t n = 0;
   float penalty_slope = 0;  // 2 mean_penalty / n
   const float *mean = nullptr, *action = nullptr, *action_gradient = nullptr;
-  Target mean_gradient;
+  Target mean_gradient = {};
 
   int blocks() const { return BlocksForElements(n); }
   bool operator==(const TanhHeadBackward&) const = default;

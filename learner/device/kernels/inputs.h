@@ -22,7 +22,7 @@ struct PoolFrames {
   using Shared = NoShared;
 
   const uint8_t* in = nullptr;
-  Target out;
+  Target out = {};
   int batch = 0, channels = 0, height = 0, width = 0;
   int pool = 1, out_channels = 0;
   float factor = 0;  // 1 / (255 pool^2)
@@ -65,7 +65,7 @@ struct PoolFrames {
 struct ColumnPiece {
   const float* from = nullptr;
   int from_width = 0, first = 0, count = 0;
-  Target to;
+  Target to = {};
   int to_width = 0, to_first = 0;
   bool adds = false;  // whether to add to the numbers that to.f32 has
 
@@ -81,7 +81,7 @@ struct CopyColumns {
 
   int rows = 0;
   int piece_count = 0;
-  ColumnPiece pieces[kMostPieces];
+  ColumnPiece pieces[kMostPieces] = {};
 
   void Add(const ColumnPiece& piece) { pieces[piece_count++] = piece; }
   SHOAL_EVERYWHERE int columns() const {
@@ -118,7 +118,7 @@ struct SumColumns {
   const float* from = nullptr;
   int from_width = 0, first = 0;
   const float* addend = nullptr;
-  Target to;
+  Target to = {};
 
   int blocks() const { return BlocksForElements(int64_t{rows} * columns); }
   bool operator==(const SumColumns&) const = default;
@@ -147,14 +147,14 @@ struct GatherLabels {
     bool operator==(const Column&) const = default;
   };
   struct Label {
-    Column number, minus;
+    Column number = {}, minus = {};
     bool operator==(const Label&) const = default;
   };
 
   int rows = 0, label_count = 0;
   float unit = 1;
   float* labels = nullptr;
-  Label columns[kMostLabels];
+  Label columns[kMostLabels] = {};
 
   int blocks() const { return BlocksForElements(int64_t{rows} * label_count); }
   bool operator==(const GatherLabels&) const = default;

@@ -37,10 +37,10 @@ struct BiasActivation {
   int functions = 1;
   int64_t rows = 0, step = 0;
   int columns = 0;
-  Source x;
+  Source x = {};
   const float* bias = nullptr;
   Activation activation = Activation::kNone;
-  Target y;
+  Target y = {};
 
   int blocks() const { return BlocksForElements(functions * rows * columns); }
   bool operator==(const BiasActivation&) const = default;
@@ -69,7 +69,7 @@ struct LayerNormForward {
   const float *linear_bias = nullptr, *weight = nullptr, *bias = nullptr;  // (N); first may be null
   Activation activation = Activation::kNone;
   float *xhat = nullptr, *rstd = nullptr;  // (F, B, N), (F, B)
-  Target y;                                // (F, B, N)
+  Target y = {};                           // (F, B, N)
 
   int blocks() const { return functions * rows; }
   bool operator==(const LayerNormForward&) const = default;
@@ -125,7 +125,7 @@ struct LayerNormBackward {
   const float *dy = nullptr, *y = nullptr;  // (F, B, N); y: output of the activation
   Activation activation = Activation::kNone;
   const float *weight = nullptr, *xhat = nullptr, *rstd = nullptr;
-  Target dx;
+  Target dx = {};
 
   int blocks() const { return functions * rows; }
   bool operator==(const LayerNormBackward&) const = default;
@@ -254,10 +254,10 @@ struct LayerNormBackwardWeights {
   static constexpr int kThreads = ColumnSums::kThreads;
   using Shared = ColumnSums::Shared<3>;
 
-  ColumnSums sums;
+  ColumnSums sums = {};
   int64_t step = 0;
   const float *dy = nullptr, *y = nullptr, *xhat = nullptr;  // (F, B, N)
-  Source dx;                                                 // (F, B, N)
+  Source dx = {};                                            // (F, B, N)
   Activation activation = Activation::kNone;
   float *dweight = nullptr, *dbias = nullptr, *dlinear_bias = nullptr;  // (N); last may be null
 
@@ -289,11 +289,11 @@ struct ActivationBackward {
   static constexpr int kThreads = ColumnSums::kThreads;
   using Shared = ColumnSums::Shared<1>;
 
-  ColumnSums sums;
+  ColumnSums sums = {};
   int64_t step = 0;
-  Source dy, y;  // (F, B, N)
+  Source dy = {}, y = {};  // (F, B, N)
   Activation activation = Activation::kNone;
-  Target dx;               // may be absent
+  Target dx = {};          // may be absent
   float* dbias = nullptr;  // (N); may be null
 
   int blocks() const { return sums.blocks(); }

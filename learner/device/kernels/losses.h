@@ -93,7 +93,7 @@ struct CriticLoss {
   const float* q[kMostCritics] = {};
   const float* y = nullptr;
   float* q_gradient[kMostCritics] = {};
-  CriticFigures figures;
+  CriticFigures figures = {};
 
   int blocks() const { return 1; }
   bool operator==(const CriticLoss&) const = default;
@@ -255,7 +255,7 @@ struct LabelLoss {
   int64_t n = 0;
   const float *y = nullptr, *labels = nullptr;
   float weight = 0, unit = 1;
-  Target gradient;
+  Target gradient = {};
   double* mean_square = nullptr;
 
   int blocks() const { return 1; }

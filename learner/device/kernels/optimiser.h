@@ -114,7 +114,7 @@ struct SumOfSquares {
     bool operator==(const Set&) const = default;
   };
   int set_count = 0;
-  Set sets[kMostSets];
+  Set sets[kMostSets] = {};
   double* partials = nullptr;   // one for each block
   int32_t* finished = nullptr;  // counter, 0
   double* squares = nullptr;
@@ -218,9 +218,9 @@ struct Adam {
   };
 
   int set_count = 0;
-  AdamSet sets[kMostSets];
+  AdamSet sets[kMostSets] = {};
   const float* gradients[kMostSets] = {};
-  AdamOptions options;
+  AdamOptions options = {};
   const double* squares = nullptr;  // of the gradients
   AdamState* state = nullptr;
   Flags* flags = nullptr;
@@ -264,7 +264,7 @@ struct EndUpdate {
   using Shared = NoShared;
 
   int set_count = 0;
-  AdamSet sets[kMostUndone];
+  AdamSet sets[kMostUndone] = {};
   AdamState* states[kMostUndone] = {};  // of the optimiser of each set
   bool counts[kMostUndone] = {};        // true for one set of each optimiser
   Flags* flags = nullptr;
@@ -314,7 +314,7 @@ struct MoveTowards {
     bool operator==(const Set&) const = default;
   };
   int set_count = 0;
-  Set sets[kMostSets];
+  Set sets[kMostSets] = {};
   float tau = 0;
   const Flags* flags = nullptr;
 
@@ -347,7 +347,7 @@ struct RoundToBf16 {
     bool operator==(const Set&) const = default;
   };
   int set_count = 0;
-  Set sets[kMostSets];
+  Set sets[kMostSets] = {};
 
   int blocks() const { return BlocksForSets(sets, set_count); }
   bool operator==(const RoundToBf16&) const = default;
@@ -405,8 +405,8 @@ struct StepTemperature {
   static constexpr int kThreads = 32;
   using Shared = NoShared;
 
-  AdamSet set;
-  AdamOptions options;  // without a limit of the norm
+  AdamSet set = {};
+  AdamOptions options = {};  // without a limit of the norm
   const double* loss = nullptr;
   float least = 0;
   AdamState* state = nullptr;
