@@ -34,6 +34,8 @@ const std::map<std::string, std::string> kHomes = {
     {"httplib", "launch/tools/web"},
     {"pybind11/", "launch/tools/python"},
     {"hdf5", "launch/tools/dataset"},
+    {"cublas", "learner/device"},
+    {"cudnn", "learner/device"},
 };
 
 // Represents a third-party program, which uses only what the documentation describes.

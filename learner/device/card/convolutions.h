@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Convolutions (commands.h) on a card: in bf16 by cuDNN's graph interface, in f32 by kernels of
+// map_kernels.h, because cuDNN might use TF32.
+//
+// cuDNN computes the plain convolution; bias, ReLU and bias gradients are kernels. Only engines of
+// cuDNN with a fixed order of sums are used. If cuDNN has no engine for a shape, the slower kernel
+// of map_kernels.h computes it, and a line on stderr says so once.
+#pragma once
+
+#include <cuda_runtime_api.h>
+#include <cudnn.h>
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+
+#include "learner/device/commands.h"
+
+namespace shoal::learner::device {
+
+class CudaConvolutions {
+ public:
+  explicit CudaConvolutions(cudaStream_t stream);
+  ~CudaConvolutions();
+  CudaConvolutions(const CudaConvolutions&) = delete;
+  CudaConvolutions& operator=(const CudaConvolutions&) = delete;
+
+  // Chooses an engine and returns the workspace that the command needs, in bytes. Call it before a
+  // capture. Throws Error (kDevice).
+  int64_t Prepare(const ConvolutionForward& command);
+  int64_t Prepare(const ConvolutionData& command);
+  int64_t Prepare(const ConvolutionWeights& command);
+  // Submit the command to the stream of the constructor. Throw Error (kDevice).
+  void Run(const ConvolutionForward& command, void* workspace);
+  void Run(const ConvolutionData& command, void* workspace);
+  void Run(const ConvolutionWeights& command, void* workspace);
+
+ private:
+  enum class Kind : int32_t { kForward, kData, kWeights };
+  class Plan;
+  using Key = std::array<int32_t, 11>;
+
+  // The plan of cuDNN; null if it has none.
+  Plan* PlanOf(Kind kind, const ConvolutionShape& shape);
+  std::unique_ptr<Plan> Choose(Kind kind, const ConvolutionShape& shape) const;
+  // Parts of the workspace of ConvolutionWeights, in bytes: cuDNN's, the gradient in bf16, sums.
+  struct WeightsWorkspace {
+    int64_t plan, narrow, sums;
+    int64_t total() const { return plan + narrow + sums; }
+  };
+  WeightsWorkspace WorkspaceOf(const ConvolutionWeights& command);
+
+  const cudaStream_t stream_;
+  cudnnHandle_t handle_ = nullptr;
+  std::map<Key, std::unique_ptr<Plan>> plans_;
+};
+
+}  // namespace shoal::learner::device
