@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// shoal-gpu-trial: compares a GPU with the host and measures rates of updates; a table on stderr,
+// JSON (schema shoal-gpu-trial-1) on stdout. Exit code 1 if a row has not passed.
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "common/base/build_info.h"
+#include "common/base/command_line.h"
+#include "common/base/main_guard.h"
+#include "common/base/or_null.h"
+#include "common/nn/precision.h"
+#include "learner/device/card_loader.h"
+#include "learner/device/host_device.h"
+#include "learner/openmp_environment.h"
+#include "tests/cuda/trial.h"
+
+namespace {
+
+using shoal::learner::device::Device;
+using shoal::trial::Row;
+
+std::unique_ptr<Device> OpenDevice(const std::string& name) {
+  if (name == "host") return std::make_unique<shoal::learner::device::HostDevice>();
+  return std::unique_ptr<Device>(shoal::learner::OpenCard().reply.device);
+}
+
+int Run(int argc, char** argv) {
+  std::string name = "cuda";
+  bool quick = false;
+  double seconds = 3;
+  CLI::App app("Compares a GPU with the host and measures rates of updates.", "shoal-gpu-trial");
+  shoal::AddVersion(&app);
+  app.add_option("--device", name, "cuda, or host: the device that tests use")
+      ->check(CLI::IsMember({"cuda", "host"}));
+  app.add_flag("--quick", quick, "small shapes and few updates");
+  app.add_option("--seconds", seconds, "of each rate")->check(CLI::Range(0.1, 60.0));
+  if (const auto exit_code = shoal::ParseCommandLine(&app, argc, argv)) return *exit_code;
+  shoal::nn::SetThreads(1);
+  shoal::learner::EnsurePassiveOpenMp(1, argv);
+
+  const std::unique_ptr<Device> device = OpenDevice(name);
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  bool passed = true;
+  const auto show = [&](const Row& row) {
+    std::cerr << fmt::format("{:<4}  {:<58} {:>12.4g} {}\n", row.passed ? "ok" : "FAIL", row.trial,
+                             row.figure, row.unit);
+    rows.push_back({{"trial", row.trial},
+                    {"figure", row.figure},
+                    {"unit", row.unit},
+                    {"limit", shoal::OrNull(row.limit)},
+                    {"passed", row.passed}});
+    passed = passed && row.passed;
+  };
+  std::cerr << fmt::format("{} (driver {})\n", device->info().name, device->info().driver);
+  shoal::trial::TryCommands(device.get(), quick, show);
+  shoal::trial::TryUpdates(device.get(), quick, show);
+  shoal::trial::TimeUpdates(device.get(), quick, seconds, show);
+  const nlohmann::ordered_json object{{"schema", "shoal-gpu-trial-1"},
+                                      {"commit", shoal::BuildCommit()},
+                                      {"device", device->info().name},
+                                      {"driver", device->info().driver},
+                                      {"passed", passed},
+                                      {"rows", rows}};
+  std::cout << object.dump(2) << "\n";
+  return passed ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return shoal::GuardMain("shoal-gpu-trial", [&] { return Run(argc, argv); });
+}

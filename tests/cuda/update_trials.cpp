@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include "common/base/clock.h"
+#include "learner/agent/algorithms.h"
+#include "learner/device/device_agent.h"
+#include "tests/benchmark/noise_batch.h"
+#include "tests/cuda/trial.h"
+
+namespace shoal::trial {
+namespace {
+
+using learner::device::Device;
+using learner::device::MakeDeviceAgent;
+
+constexpr double kF32Drift = 1e-3, kBf16Drift = 2e-2;
+
+struct Setting {
+  std::string algorithm, encoder;  // encoder "" = vectors only
+  nn::Precision precision;
+};
+
+Config ConfigOf(const Setting& setting, int batch) {
+  Config config;
+  config.learner.algorithm = setting.algorithm;
+  config.learner.batch = batch;
+  config.observation.pixels = !setting.encoder.empty();
+  if (!setting.encoder.empty()) config.network.encoder = setting.encoder;
+  return config;
+}
+
+ObservationSpec SpecOf(const Setting& setting) {
+  ObservationSpec spec = bench::PixelSpec();
+  if (!setting.encoder.empty()) return spec;
+  spec.cameras.clear();
+  spec.channels = 0;
+  spec.blocks = {{"state", 10}};
+  return spec;
+}
+
+float FloatAt(const nn::NamedTensor& tensor, size_t byte) {
+  float value;
+  std::memcpy(&value, &tensor.data.at(byte), sizeof(value));
+  return value;
+}
+
+// The tensor whose values differ most, by the Euclidean norm of the difference relative to that of
+// the tensor.
+double ParameterDifference(const nn::TensorMap& a, const nn::TensorMap& b) {
+  double worst = 0;
+  for (const auto& [name, tensor] : a) {
+    const auto other = b.find(name);
+    if (other == b.end()) return std::numeric_limits<double>::infinity();
+    double difference = 0, norm = 0;
+    for (size_t i = 0; i + sizeof(float) <= tensor.data.size(); i += sizeof(float)) {
+      const double x = FloatAt(tensor, i), y = FloatAt(other->second, i);
+      difference += (x - y) * (x - y);
+      norm += y * y;
+    }
+    worst = std::max(worst, std::sqrt(difference) / std::max(std::sqrt(norm), 1e-6));
+    if (!std::isfinite(difference)) return std::numeric_limits<double>::infinity();
+  }
+  return worst;
+}
+
+void TryUpdatesOf(Device* device, const Setting& setting, int updates, int batch,
+                  const Show& show) {
+  const Config config = ConfigOf(setting, batch);
+  const ObservationSpec spec = SpecOf(setting);
+  const bench::NoiseBatch noise(config, spec);
+  const auto ours = MakeDeviceAgent(config, spec, setting.precision, device);
+  const auto theirs = learner::MakeAgent(config, spec, setting.precision);
+  for (int i = 0; i < updates; ++i) {
+    ours->Submit(noise.batch, [](learner::UpdateStage) {});
+    theirs->Update(noise.batch);
+  }
+  ours->Finish();
+  const bool f32 = setting.precision == nn::Precision::kF32;
+  const double figure = ParameterDifference(ours->PolicyTensors(), theirs->PolicyTensors());
+  const double limit = f32 ? kF32Drift : kBf16Drift;
+  show({.trial = fmt::format("{} updates of {}, {}, {}", updates, setting.algorithm,
+                             setting.encoder.empty() ? "vectors" : setting.encoder,
+                             nn::ToString(setting.precision)),
+        .figure = figure,
+        .unit = "relative difference",
+        .limit = limit,
+        .passed = figure <= limit});
+}
+
+void TimeUpdatesOf(Device* device, const std::string& encoder, int batch, double seconds,
+                   std::optional<double> least, const Show& show) {
+  const Setting setting{.algorithm = "sac", .encoder = encoder, .precision = nn::Precision::kBf16};
+  const Config config = ConfigOf(setting, batch);
+  const ObservationSpec spec = SpecOf(setting);
+  const bench::NoiseBatch noise(config, spec);
+  const auto agent = MakeDeviceAgent(config, spec, setting.precision, device);
+  const auto run = [&](double for_seconds) {
+    int updates = 0;
+    const SteadyTime start = Now();
+    while (SecondsSince(start) < for_seconds) {
+      agent->Submit(noise.batch, [](learner::UpdateStage) {});
+      ++updates;
+    }
+    agent->Finish();
+    return updates / SecondsSince(start);
+  };
+  run(seconds / 3);  // the first updates are recorded
+  const double rate = run(seconds);
+  show({.trial = fmt::format("SAC update, {}, batch {}, bf16, batches copied", encoder, batch),
+        .figure = rate,
+        .unit = "updates/s",
+        .limit = least,
+        .passed = !least || rate >= *least});
+}
+
+}  // namespace
+
+void TryUpdates(Device* device, bool quick, const Show& show) {
+  if (quick) {
+    TryUpdatesOf(device, {.algorithm = "sac", .encoder = "", .precision = nn::Precision::kF32}, 5,
+                 8, show);
+    return;
+  }
+  for (const char* algorithm : {"sac", "td3", "ddpg"}) {
+    for (const char* encoder : {"", "compact", "drq", "nature"}) {
+      TryUpdatesOf(device, {algorithm, encoder, nn::Precision::kF32}, 200, 16, show);
+    }
+  }
+  // The CPU's engine needs a CPU with bf16.
+  if (nn::ChoosePrecision("auto", /*pixels=*/true) == nn::Precision::kBf16) {
+    TryUpdatesOf(device, {"sac", "compact", nn::Precision::kBf16}, 200, 16, show);
+  }
+}
+
+void TimeUpdates(Device* device, bool quick, double seconds, const Show& show) {
+  if (quick) {
+    TimeUpdatesOf(device, "compact", 2, 0.1, std::nullopt, show);
+    return;
+  }
+  // The least rates are those of PyTorch on an H100 (docs/notes/learner-on-a-gpu.md).
+  TimeUpdatesOf(device, "compact", 128, seconds, 1055, show);
+  TimeUpdatesOf(device, "drq", 256, seconds, 404, show);
+  TimeUpdatesOf(device, "nature", 256, seconds, std::nullopt, show);
+}
+
+}  // namespace shoal::trial
