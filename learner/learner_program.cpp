@@ -18,13 +18,20 @@
 namespace shoal::learner {
 namespace {
 
-ResizableAgent::Make MakeAgentOf(const RunConfig& run, nn::Precision precision,
+ResizableAgent::Make MakeAgentOf(const RunConfig& run, LearnerDevice& device,
                                  const AgentFactory& make, NodeAffinity* affinity) {
-  return [&run, precision, make, affinity](int threads) {
+  return [&run, &device, make, affinity](int threads) {
     if (affinity != nullptr) affinity->FitTo(threads);
     nn::SetThreads(threads);
-    return make(run.config, run.spec, precision);
+    return device.on_gpu() ? device.MakeAgent(run) : make(run.config, run.spec, device.precision());
   };
+}
+
+// The learner's processor as text for its log.
+std::string ProcessorText(const RunConfig& run, const LearnerDevice& device, int threads,
+                          int cores) {
+  if (device.on_gpu()) return device.Description();
+  return fmt::format("{}, {}", nn::CpuIsa(), DescribeThreads(run.config, run.spec, threads, cores));
 }
 
 }  // namespace
@@ -36,11 +43,11 @@ LearnerProgram::LearnerProgram(const std::filesystem::path& folder, const Proces
       name_(name),
       run_(run),
       session_(NextSession(folder, name.Text(), WallTimeNs())),
-      precision_(nn::ChoosePrecision(run.config.learner.precision, run.spec.HasPixels())),
       affinity_(affinity),
-      agent_(MakeAgentOf(run_, precision_, make, affinity_), threads),
+      device_(folder, run_),
+      agent_(MakeAgentOf(run_, device_, make, affinity_), device_.on_gpu() ? 1 : threads),
       checkpoints_(folder, run),
-      restored_(Restore()),
+      restored_(device_.CountingLosses([this] { return Restore(); })),
       update_page_(folder, agent_.updates()),
       control_(Now()),
       sink_(hub),
@@ -49,16 +56,20 @@ LearnerProgram::LearnerProgram(const std::filesystem::path& folder, const Proces
           hub,
           [this](const EvalMessage& m) { pending_evaluations_.OnEvaluated(m.version.update); }),
       control_subscriber_(hub, [this](const ControlMessage& m) { control_.OnMessage(m, Now()); }) {
-  log::Info("session {}: {}, {} ({}), {}, batches of {}, {}", session_,
-            run.config.learner.algorithm, nn::ToString(precision_), nn::CpuIsa(),
-            DescribeThreads(run.config, run.spec, threads, UsableCores(Limits())),
-            run.config.learner.batch, run.spec.Summary());
+  log::Info("session {}: {}, {} ({}), batches of {}, {}", session_, run.config.learner.algorithm,
+            nn::ToString(device_.precision()),
+            ProcessorText(run_, device_, threads, UsableCores(Limits())), run.config.learner.batch,
+            run.spec.Summary());
 }
 
 int LearnerProgram::Run() {
+  return device_.CountingLosses([this] { return Train(); });
+}
+
+int LearnerProgram::Train() {
   TrainingLoop loop({.run = run_,
                      .name = name_,
-                     .precision = precision_,
+                     .precision = device_.precision(),
                      .session = session_,
                      .agent = agent_,
                      .batches = batches_->stream(),
@@ -68,7 +79,8 @@ int LearnerProgram::Run() {
                      .control = control_,
                      .update_page = update_page_,
                      .threads = agent_.threads(),
-                     .resize = [this](int threads) { return Resize(threads); }},
+                     .resize = [this](int threads) { return Resize(threads); },
+                     .look = [this] { return device_.Look(); }},
                     restored_);
   const TrainingLoop::End end = loop.Run();
   const auto unwritten = checkpoints_.UnwrittenUpdates();
@@ -92,7 +104,7 @@ std::optional<CheckpointState> LearnerProgram::Restore() {
   }
   policy::CheckWriter(checkpoint->folder, checkpoint->state, checkpoint->description, run_.config);
   const std::string warning =
-      CheckPrecision(*checkpoint, run_.config.learner.precision, precision_);
+      CheckPrecision(*checkpoint, run_.config.learner.precision, device_.precision());
   if (!warning.empty()) log::Warning("{}", warning);
   agent_.Restore(checkpoint->tensors, (checkpoint->folder / kLearnerFile).string());
   if (agent_.updates() != checkpoint->state.updates) {
@@ -107,6 +119,7 @@ std::optional<CheckpointState> LearnerProgram::Restore() {
 int LearnerProgram::Resize(int threads) {
   try {
     // The count comes from a command to the running learner, so a bad one is reported and ignored.
+    if (device_.on_gpu()) throw UsageError("learner.threads: the learner computes on a GPU");
     if (threads < 1) throw UsageError("learner.threads = {}: expected at least 1", threads);
     CheckCores("learner.threads", threads, Limits());
     agent_.Resize(threads);

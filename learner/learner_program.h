@@ -11,7 +11,6 @@
 #include "common/config/run_config.h"
 #include "common/link/hub.h"
 #include "common/link/reader.h"
-#include "common/nn/precision.h"
 #include "common/run_folder/update_page.h"
 #include "common/wire/control_state.h"
 #include "common/wire/process_name.h"
@@ -21,6 +20,7 @@
 #include "learner/batch_feed.h"
 #include "learner/checkpoint_store.h"
 #include "learner/hub_learner_sink.h"
+#include "learner/learner_device.h"
 #include "learner/node_affinity.h"
 #include "learner/pending_evaluations.h"
 
@@ -31,19 +31,23 @@ namespace shoal::learner {
 class LearnerProgram {
  public:
   // Makes the learner `name` of the run in `folder`. Restores the newest checkpoint, or starts
-  // without one. Its networks use `threads` threads. `make` makes the run's agent; tests pass a
-  // cheaper agent. `affinity` places the threads of a process of its own; null leaves them where
-  // they are. The same thread must construct and run the program. Borrows the hub and `affinity`.
-  // Throws Error.
+  // without one. On a CPU its networks use `threads` threads, and `make` makes the run's agent;
+  // tests pass a cheaper agent. `affinity` places the threads of a process of its own; null leaves
+  // them where they are. The same thread must construct and run the program. Borrows the hub and
+  // `affinity`. Throws Error.
   LearnerProgram(const std::filesystem::path& folder, const ProcessName& name, const RunConfig& run,
                  int threads, link::Hub& hub, const AgentFactory& make = learner::MakeAgent,
                  NodeAffinity* affinity = nullptr);
 
   // Trains until the run stops and returns the exit code: 0 after a stop request, kUnwrittenExit if
-  // the last checkpoint could not be written, 1 if the coordinator was lost. Throws Error.
+  // the last checkpoint could not be written, 1 if the coordinator was lost. Throws Error; of the
+  // kind kDevice if the GPU failed, which is then counted in the run's learner_device.json.
   int Run();
 
  private:
+  // Run, without counting a loss of the GPU.
+  int Train();
+
   std::optional<CheckpointState> Restore();
 
   void StartFresh();
@@ -58,8 +62,8 @@ class LearnerProgram {
   const ProcessName name_;
   const RunConfig run_;
   const uint64_t session_;
-  const nn::Precision precision_;
   NodeAffinity* const affinity_;
+  LearnerDevice device_;
   ResizableAgent agent_;
   CheckpointStore checkpoints_;
   const std::optional<CheckpointState> restored_;

@@ -72,6 +72,7 @@ const MetricsMessage& LearnerReport::Make(const LearnerFigures& figures) {
   add("eval_interval", figures.eval_interval);
   add("budget_env_steps", figures.budget);
   add("threads", figures.threads);
+  if (figures.card) AddCard(*figures.card);
   add("weights_sent", figures.weights_sent);
   add("weights_unsent", figures.weights_unsent);
   add("evaluations_overtaken", figures.evaluations_overtaken);
@@ -82,6 +83,12 @@ const MetricsMessage& LearnerReport::Make(const LearnerFigures& figures) {
   add("warnings", guard_.warnings());
   report_.AddResources();
   return report_.message();
+}
+
+void LearnerReport::AddCard(const CardUse& card) {
+  report_.Add("card_memory_mb", static_cast<double>(card.memory_bytes) / 1e6);
+  report_.Add("card_memory_size_mb", static_cast<double>(card.memory_size_bytes) / 1e6);
+  if (card.busy >= 0) report_.Add("card_busy", card.busy);
 }
 
 void LearnerReport::AddBatches(const LearnerFigures& figures) {

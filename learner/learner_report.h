@@ -10,6 +10,7 @@
 //   eval_interval, budget_env_steps   current values
 //   samples_per_insert, weights_period   current values, with a replay
 //   threads                           current threads of the agent
+//   card_memory_mb, card_memory_size_mb, card_busy   use of the GPU, if the learner has one
 //   eval_updates                      updates of the last evaluation point sent
 //   drained                           1 after the end of draining
 #pragma once
@@ -17,6 +18,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <string>
 
 #include "common/config/run_config.h"
@@ -24,6 +26,7 @@
 #include "common/wire/process_name.h"
 #include "learner/agent/agent.h"
 #include "learner/batch_stream.h"
+#include "learner/device/card_library.h"
 #include "learner/training_guard.h"
 #include "learner/update_window.h"
 
@@ -46,8 +49,9 @@ struct LearnerFigures {
   uint64_t eval_updates = 0;
   bool drained = false;
   double samples_per_insert = 0, eval_interval = 0, weights_period = 0;
-  double budget = 0;  // env steps
-  int threads = 1;    // threads of the agent
+  double budget = 0;            // env steps
+  int threads = 1;              // threads of the agent
+  std::optional<CardUse> card;  // use of the GPU
   LearnerSeconds seconds;
   BatchCounters batches;
 };
@@ -68,6 +72,7 @@ class LearnerReport {
 
  private:
   void AddTimes(const LearnerSeconds& seconds);
+  void AddCard(const CardUse& card);
   void AddBatches(const LearnerFigures& figures);
   void AddRollouts(const BatchCounters::Rollouts& rollouts);
 

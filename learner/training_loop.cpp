@@ -277,6 +277,7 @@ void TrainingLoop::Report(bool now) {
                                .weights_period = static_cast<double>(weights_.period()),
                                .budget = static_cast<double>(budget_),
                                .threads = threads_,
+                               .card = parts_.look == nullptr ? std::nullopt : parts_.look(),
                                .seconds = seconds_,
                                .batches = parts_.batches.counters()};
   TellProgress();

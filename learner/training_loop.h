@@ -61,6 +61,8 @@ class TrainingLoop {
     // Changes the agent's number of threads and returns the new number. If null, the agent keeps
     // `threads`. Called between updates, once for each requested number.
     std::function<int(int threads)> resize = nullptr;
+    // Reads the use of the GPU; null or nullopt on a CPU.
+    std::function<std::optional<CardUse>()> look = nullptr;
   };
 
   enum class End { kStopped, kCoordinatorLost };

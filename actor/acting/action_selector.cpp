@@ -4,6 +4,15 @@
 #include <fmt/core.h>
 
 namespace shoal::actor {
+namespace {
+
+// A learner on a GPU may compute in bf16 although this CPU cannot.
+nn::Precision ActingPrecision(const LearnerConfig& learner, const ObservationSpec& spec) {
+  const bool other = learner.device != "cpu" && learner.precision == "bf16";
+  return nn::ChoosePrecision(other ? "auto" : learner.precision, spec.HasPixels());
+}
+
+}  // namespace
 
 ActionSelector::ActionSelector(const Config& config, const ObservationSpec& spec, int envs,
                                uint32_t actor)
@@ -11,8 +20,7 @@ ActionSelector::ActionSelector(const Config& config, const ObservationSpec& spec
       action_size_(spec.action_size),
       vector_size_(spec.VectorSize()),
       stack_bytes_(spec.InputBytes()),
-      policy_(config.network, spec, nn::ChoosePrecision(config.learner.precision, spec.HasPixels()),
-              envs),
+      policy_(config.network, spec, ActingPrecision(config.learner, spec), envs),
       exploration_(MakeExploration(config, envs, spec.action_size, NoiseFactor(config, actor))),
       streams_(size_t(envs), Random(0)),
       frames_(size_t(envs) * stack_bytes_),

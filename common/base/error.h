@@ -17,9 +17,10 @@
 namespace shoal {
 
 // Exit codes of every program: 0 success, 1 run-time failure, 2 wrong usage (arguments,
-// configuration), 3 a number that is not finite (simulation, weights, losses). If a command ended
-// with 2 or 3, the same command would fail again.
-enum class ErrorKind { kRuntime = 1, kUsage = 2, kNonFinite = 3 };
+// configuration), 3 a number that is not finite (simulation, weights, losses), 5 a GPU that failed
+// or was lost. If a command ended with 2 or 3, the same command would fail again. 4 is
+// kUnwrittenExit (write_faults.h).
+enum class ErrorKind { kRuntime = 1, kUsage = 2, kNonFinite = 3, kDevice = 5 };
 
 class Error : public std::runtime_error {
  public:
@@ -42,6 +43,10 @@ Error UsageError(fmt::format_string<Args...> format, Args&&... args) {
 template <class... Args>
 Error NonFiniteError(fmt::format_string<Args...> format, Args&&... args) {
   return Error(ErrorKind::kNonFinite, fmt::format(format, std::forward<Args>(args)...));
+}
+template <class... Args>
+Error DeviceError(fmt::format_string<Args...> format, Args&&... args) {
+  return Error(ErrorKind::kDevice, fmt::format(format, std::forward<Args>(args)...));
 }
 
 }  // namespace shoal

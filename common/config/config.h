@@ -95,6 +95,7 @@ struct ReplayConfig {
 struct LearnerConfig {
   std::string algorithm = "sac";  // common/config/algorithm_kind.h
   int batch = 128;
+  std::string device = "cpu";      // cpu | cuda | auto: processor that computes the updates
   std::string precision = "auto";  // auto | f32 | bf16
   int threads = 0;                 // 0 = chosen as in common/config/learner_threads.h
   double learning_rate = 5e-4;

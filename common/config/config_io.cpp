@@ -144,11 +144,11 @@ json AssignedValue(const Key& key, const std::string& text) {
   return value.is_discarded() ? json(text) : value;
 }
 
-// Whether the key influences what a run computes. Other keys say how long it goes on or where it is
-// stored.
+// Whether the key influences what a run computes. Other keys say how long it goes on, where it is
+// stored, and which processor computes it: a run may change its device when it is resumed.
 bool PartOfIdentity(std::string_view path) {
   return path != "preset" && path != "run_name" && path != "run_dir" && path != "env_steps" &&
-         !path.starts_with("stop.");
+         path != "learner.device" && !path.starts_with("stop.");
 }
 
 nlohmann::ordered_json KeysToJson(const Config& config, bool (*wanted)(std::string_view)) {

@@ -43,7 +43,8 @@ void Validate(const Config& config);
 nlohmann::ordered_json ToJson(const Config& config);
 
 // Hash of the keys that determine the results of a run: all keys except preset, run_name, run_dir,
-// env_steps and stop.*. A run that is resumed with a larger env_steps keeps its hash.
+// env_steps, learner.device and stop.*. A run that is resumed with a larger env_steps keeps its
+// hash.
 uint64_t ConfigHash(const Config& config);
 
 // Markdown table of every key: default, range, meaning. Source of docs/configuration.md.

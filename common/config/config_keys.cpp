@@ -174,9 +174,12 @@ std::vector<Key> LearnerKeys() {
       SHOAL_KEY(learner.algorithm, AlgorithmChoices(), "learning algorithm: docs/algorithm.md"),
       SHOAL_KEY(learner.batch, (IntegerRange{1, 65'536}),
                 "transitions per update; ppo: per minibatch"),
+      SHOAL_KEY(learner.device, (Choices{{"cpu", "cuda", "auto"}}),
+                "processor that computes the updates; cuda = an NVIDIA GPU of the learner's host "
+                "(docs/gpu.md); auto = cuda if a GPU can be used, else cpu"),
       SHOAL_KEY(learner.precision, (Choices{{"auto", "f32", "bf16"}}),
                 "arithmetic of the large products; auto = bf16 with pixels "
-                "where the CPU has it natively, else f32"),
+                "where the learner's CPU or GPU has it natively, else f32"),
       SHOAL_KEY(learner.threads, (IntegerRange{0, 1024}),
                 "threads of the learner, each with a share of the batch's rows (ppo and encoders "
                 "with batch normalisation: with a share of each layer); 0 = chosen by the run. "

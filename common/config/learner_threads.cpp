@@ -44,6 +44,7 @@ int MostThreads(const Config& config) {
 
 int LearnerThreads(const Config& config, int cores) {
   if (config.learner.threads > 0) return config.learner.threads;
+  if (config.learner.device == "cuda") return 1;
   if (LearnsOnPolicy(config)) return Half(cores);
   if (!config.observation.pixels) return 1;
   const int useful = std::max(1, config.learner.batch / kLeastRows);

@@ -8,6 +8,7 @@ namespace shoal {
 
 // learner.threads or, if this key is 0, a number computed from `cores`:
 //
+// - On a GPU (learner.device = cuda): 1, which submits the GPU's work.
 // - On policy: half of the cores, at least 1.
 // - Off policy: half of the cores, at least 1. If there is at least one update for every eight env
 //   steps, three quarters, rounded up. If there is at least one update for each env step, all

@@ -32,6 +32,11 @@ Precision ChoosePrecision(const std::string& asked, bool pixels) {
   return Precision::kBf16;
 }
 
+Precision ChooseGpuPrecision(const std::string& asked, bool pixels) {
+  if (asked == "auto") return pixels ? Precision::kBf16 : Precision::kF32;
+  return asked == "bf16" ? Precision::kBf16 : Precision::kF32;
+}
+
 const char* ToString(Precision precision) { return precision == Precision::kBf16 ? "bf16" : "f32"; }
 
 std::string CpuIsa() {

@@ -12,6 +12,8 @@ enum class Precision { kF32, kBf16 };
 // a CPU with native bf16, else f32. Without pixels bf16 is faster too, but it rounds hidden layers,
 // so it must be configured explicitly. Throws Error for "bf16" on a CPU without bf16.
 Precision ChoosePrecision(const std::string& asked, bool pixels);
+// The same for networks on a GPU, which has bf16.
+Precision ChooseGpuPrecision(const std::string& asked, bool pixels);
 const char* ToString(Precision precision);
 // Sets the number of threads of networks that the calling thread builds from now on.
 void SetThreads(int threads);

@@ -51,6 +51,12 @@ inline constexpr char kRingFile[] = "replay.ring";
 // restarted learner and by the coordinator.
 inline constexpr char kUpdatePageFile[] = "learner.page";
 
+// Processor that computes the updates (learner_device_file.h), if learner.device is not "cpu".
+// Written by the learner; read by a restarted learner and by the coordinator, which removes the
+// file when the run starts or resumes.
+inline constexpr char kLearnerDeviceFile[] = "learner_device.json";
+inline constexpr char kLearnerDeviceSchema[] = "shoal-learner-device-1";
+
 // Lock files: the coordinator locks .lock during the run, and each process of the run on this host
 // locks .members.
 inline constexpr char kRunLockFile[] = ".lock";

@@ -60,6 +60,7 @@ std::vector<CheckLine> CheckMachine(const CheckRequest& request,
     return JudgeCpu(nn::CpuIsa(), nn::ToString(nn::ChoosePrecision("auto", /*pixels=*/true)));
   });
   look("cores", "", [] { return JudgeCores(ReadCoreLimits()); });
+  look("gpu", "", LookAtGpu);
 
   Config config;
   Needs needs;

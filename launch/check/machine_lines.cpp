@@ -14,6 +14,7 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/openmp_binding.h"
+#include "learner/device/card_loader.h"
 #include "replay_server/core/storage_limits.h"
 
 namespace shoal::launch {
@@ -82,6 +83,18 @@ CheckLine JudgeCores(const CoreLimits& limits) {
     line.advice = fmt::format(
         "learner and actors share one core and take turns{}; give the process two or more",
         why.empty() ? "" : ": " + why);
+  }
+  return line;
+}
+
+CheckLine LookAtGpu() {
+  CheckLine line{"gpu", Verdict::kOk, "", ""};
+  try {
+    const learner::CardInfo gpu = learner::ProbeCard();
+    line.finding = fmt::format("{} ({:.0f} GB, driver {}), for learner.device=cuda", gpu.name,
+                               static_cast<double>(gpu.memory_bytes) / 1e9, gpu.driver);
+  } catch (const Error& e) {
+    line.finding = fmt::format("none is used: {}", e.what());
   }
   return line;
 }

@@ -17,6 +17,9 @@ CheckLine JudgeCpu(const std::string& isa, const std::string& precision);
 
 CheckLine JudgeCores(const CoreLimits& limits);
 
+// The GPU for learner.device = cuda, or why there is none. Training needs no GPU.
+CheckLine LookAtGpu();
+
 // Names the distribution and reports whether building and training were tested on it
 // (docs/install.md). `release_files` are tried in order: /etc/os-release, /usr/lib/os-release.
 CheckLine JudgeSystem(const std::vector<std::filesystem::path>& release_files);

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "common/base/build_info.h"
@@ -12,6 +13,7 @@
 #include "common/base/or_null.h"
 #include "common/config/config_io.h"
 #include "common/nn/precision.h"
+#include "common/run_folder/learner_device_file.h"
 #include "common/run_folder/run_file_names.h"
 #include "launch/record/machine.h"
 
@@ -83,9 +85,39 @@ ordered_json Versions() {
           {"onednn", SHOAL_ONEDNN_VERSION}};
 }
 
+// The learner's record; nullopt on a CPU without a choice, before the learner has started, or if
+// the file is damaged.
+std::optional<LearnerDeviceRecord> DeviceOf(const std::filesystem::path& run) {
+  try {
+    return ReadLearnerDevice(run);
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+std::string Precision(const Config& config, const std::optional<LearnerDeviceRecord>& device) {
+  if (device) return device->precision;
+  const auto choose =
+      config.learner.device == "cuda" ? nn::ChooseGpuPrecision : nn::ChoosePrecision;
+  return nn::ToString(choose(config.learner.precision, config.observation.pixels));
+}
+
+ordered_json LearnerDevice(const std::optional<LearnerDeviceRecord>& device) {
+  if (!device || device->device == "cpu") {
+    const bool chosen = device && !device->reason.empty();
+    return {{"device", "cpu"}, {"reason", chosen ? ordered_json(device->reason) : nullptr}};
+  }
+  return {{"device", device->device},
+          {"card", device->card},
+          {"driver", device->driver},
+          {"memory_gb", std::round(static_cast<double>(device->memory_bytes) / 1e8) / 10},
+          {"losses", device->losses}};
+}
+
 }  // namespace
 
 void WriteRunMeta(const std::filesystem::path& run, const Config& config, const RunMeta& meta) {
+  const std::optional<LearnerDeviceRecord> device = DeviceOf(run);
   const ordered_json object{
       {"schema", kMetaSchema},
       {"name", config.run_name},
@@ -96,8 +128,8 @@ void WriteRunMeta(const std::filesystem::path& run, const Config& config, const 
       {"commits", Commits(meta)},
       {"versions", Versions()},
       {"machine", DescribeMachine()},
-      {"precision",
-       nn::ToString(nn::ChoosePrecision(config.learner.precision, config.observation.pixels))},
+      {"precision", Precision(config, device)},
+      {"learner_device", LearnerDevice(device)},
       {"policy_inputs", ToJson(meta.policy_inputs)},
       {"privileged_inputs", ToJson(meta.privileged_inputs)},
       {"started", meta.started},

@@ -41,8 +41,8 @@ struct RunMeta {
   std::string error;             // reason of a failure
 };
 
-// Writes meta.json. The member `updates_per_env_step` is the ratio so far, null before the first
-// env step. Throws Error.
+// Writes meta.json; the learner's processor is that of learner_device.json. The member
+// `updates_per_env_step` is the ratio so far, null before the first env step. Throws Error.
 void WriteRunMeta(const std::filesystem::path& run, const Config& config, const RunMeta& meta);
 
 // "while training: success >= 98 % over 2 evaluations in a row, first from 60012 env steps, 5400

@@ -7,6 +7,7 @@
 #include "common/config/on_policy.h"
 #include "common/nn/precision.h"
 #include "learner/agent/update_cost.h"
+#include "learner/learner_device.h"
 
 namespace shoal::launch {
 namespace {
@@ -45,6 +46,7 @@ std::optional<SplitLimits> LimitsOfSplit(const Config& given, bool other_hosts, 
   const bool divides =
       (given.actors == 0 || given.learner.threads == 0) && !given.lockstep &&
       !LearnsOnPolicy(given) && given.observation.pixels && !other_hosts && cores >= kLeastCores &&
+      !learner::UsesGpu(given.learner) &&
       given.replay.samples_per_insert.Mean(0, static_cast<uint64_t>(given.env_steps)) > 0;
   if (!divides) return std::nullopt;
   SplitLimits limits{.cores = cores, .most_threads = MostThreads(given)};

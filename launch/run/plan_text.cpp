@@ -61,6 +61,12 @@ std::string PaceText(const Config& config) {
                      last, samples.env_steps);
 }
 
+nn::Precision PrecisionOf(const Config& config) {
+  const auto choose =
+      config.learner.device == "cuda" ? nn::ChooseGpuPrecision : nn::ChoosePrecision;
+  return choose(config.learner.precision, config.observation.pixels);
+}
+
 std::string UpdateText(const RunConfig& run) {
   const Config& config = run.config;
   const learner::UpdateCost cost = learner::CostOfUpdate(config, run.spec);
@@ -68,10 +74,9 @@ std::string UpdateText(const RunConfig& run) {
                                   ? fmt::format("encoder {} of {} parameters, ",
                                                 config.network.encoder, cost.encoder_parameters)
                                   : "";
-  return fmt::format(
-      "{} in {}: {}batch {}, {:.3g} GFLOP an update", config.learner.algorithm,
-      nn::ToString(nn::ChoosePrecision(config.learner.precision, config.observation.pixels)),
-      encoder, config.learner.batch, cost.flop / kGiga);
+  return fmt::format("{} in {}: {}batch {}, {:.3g} GFLOP an update", config.learner.algorithm,
+                     nn::ToString(PrecisionOf(config)), encoder, config.learner.batch,
+                     cost.flop / kGiga);
 }
 
 // Privileged inputs of the training. Results of the run must name them.

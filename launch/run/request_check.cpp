@@ -28,6 +28,7 @@
 #include "learner/agent/algorithms.h"
 #include "learner/agent/network_start.h"
 #include "learner/agent/value_bounds.h"
+#include "learner/learner_device.h"
 #include "replay_server/core/hindsight.h"
 #include "replay_server/core/replay_core.h"
 #include "replay_server/core/storage_limits.h"
@@ -128,6 +129,7 @@ void CheckOpenFiles() {
 
 void CheckRequest(const TrainOptions& options, RunRequest* request) {
   CheckNetwork(request->config);
+  learner::CheckLearnerDevice(request->config);
   if (!request->resumed()) ReadStartWeights(options, request);
   CheckReplay(request->config, request->resumed() ? request->folder->path() : fs::path());
   CheckHosts(request->hosts, StopRequested);

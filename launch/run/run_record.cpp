@@ -5,6 +5,8 @@
 
 #include <utility>
 
+#include "common/base/error.h"
+#include "common/run_folder/learner_device_file.h"
 #include "common/run_folder/run_file_names.h"
 #include "common/run_folder/update_page.h"
 #include "launch/record/kept_checkpoints.h"
@@ -17,10 +19,23 @@ RunRecord::RunRecord(const std::filesystem::path& run, const Config& config,
     : run_(run), config_(config), say_(std::move(say)), faults_(say_), scalars_(run) {}
 
 void RunRecord::WriteMeta(RunMeta meta) {
+  SayLearnerDevice();
   faults_.Try(kMetaFile, [&] {
     meta.updates_lost = ReadLostUpdates(run_);
     WriteRunMeta(run_, config_, meta);
   });
+}
+
+void RunRecord::SayLearnerDevice() {
+  if (config_.learner.device == "cpu") return;
+  try {
+    const auto device = ReadLearnerDevice(run_);
+    if (!device || Describe(*device) == learner_device_) return;
+    learner_device_ = Describe(*device);
+    say_(fmt::format("learner.device = {}: the learner computes on {}", config_.learner.device,
+                     learner_device_));
+  } catch (const Error&) {  // damaged; the next start of the learner replaces the file
+  }
 }
 
 void RunRecord::FlushScalars() {

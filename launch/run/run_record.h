@@ -43,6 +43,8 @@ class RunRecord {
   void Retry();
 
  private:
+  // Prints a line if the learner has chosen a processor, or another one than before.
+  void SayLearnerDevice();
   bool Exists(const std::string& checkpoint) const;
 
   const std::filesystem::path run_;
@@ -52,6 +54,7 @@ class RunRecord {
   EvaluationStore evaluations_{run_, &faults_};
   ScalarLog scalars_;
   CandidateCheckpoints checkpoints_;
+  std::string learner_device_;                            // processor of the last line
   std::optional<std::vector<EvaluationPoint>> not_kept_;  // candidates of the last attempt
 };
 

@@ -13,6 +13,19 @@
 
 namespace shoal::launch {
 
+namespace {
+
+// Which processor `auto` chooses is known when the learner has started.
+std::string LearnerText(const RunConfig& run) {
+  const LearnerConfig& learner = run.config.learner;
+  if (learner.device == "cuda") return "on a GPU";
+  const std::string threads =
+      learner::DescribeThreads(run.config, run.spec, learner.threads, UsableCores());
+  return learner.device == "auto" ? "on a GPU, else with " + threads : threads;
+}
+
+}  // namespace
+
 std::string StartText(const RunRequest& request, const std::filesystem::path& run,
                       const ClusterAddress& address) {
   const Config& config = request.config.config;
@@ -23,10 +36,8 @@ std::string StartText(const RunRequest& request, const std::filesystem::path& ru
       "  seed {}, {} env steps; {}{} learner ({}), {} actor(s) of {} environments, {} evaluation "
       "actor; logs in {}\n",
       config.seed, config.env_steps, replays == 0 ? "" : fmt::format("{} replay, ", replays),
-      topology.Of(link::Role::kLearner).size(),
-      learner::DescribeThreads(config, request.config.spec, config.learner.threads, UsableCores()),
-      config.actors, config.envs_per_actor, topology.Of(link::Role::kEval).size(),
-      (run / kLogFolder).string());
+      topology.Of(link::Role::kLearner).size(), LearnerText(request.config), config.actors,
+      config.envs_per_actor, topology.Of(link::Role::kEval).size(), (run / kLogFolder).string());
   if (request.meta.env_steps > 0) {
     const std::filesystem::path checkpoint = NewestCheckpoint(run);
     text +=

@@ -10,6 +10,7 @@
 #include "common/config/config_io.h"
 #include "common/config/learner_threads.h"
 #include "common/run_folder/run_file_names.h"
+#include "learner/learner_device.h"
 
 namespace shoal::launch {
 namespace {
@@ -36,6 +37,12 @@ FilePreset ChoosePreset(const TrainOptions& options) {
   }
   if (!options.preset.empty()) of_file.name = options.preset;
   return of_file;
+}
+
+// On a GPU, one thread submits the work.
+int ThreadsOf(const Config& config, int cores) {
+  if (config.learner.threads == 0 && learner::UsesGpu(config.learner)) return 1;
+  return LearnerThreads(config, cores);
 }
 
 }  // namespace
@@ -69,7 +76,7 @@ Config GivenConfig(const TrainOptions& options, const EnvironmentDefaults& defau
 Config ResolveConfig(const TrainOptions& options, int cores, const EnvironmentDefaults& defaults) {
   Config config = GivenConfig(options, defaults);
   // Threads of one update wait for each other, so a core shared with an actor stalls them all.
-  config.learner.threads = LearnerThreads(config, cores);
+  config.learner.threads = ThreadsOf(config, cores);
   if (config.actors == 0) {
     config.actors = config.lockstep ? 1 : std::max(1, cores - config.learner.threads);
   }
@@ -78,7 +85,8 @@ Config ResolveConfig(const TrainOptions& options, int cores, const EnvironmentDe
 }
 
 bool SetsForMachine(const std::string& assignment) {
-  return assignment.starts_with("learner.precision=") ||
+  return assignment.starts_with("learner.device=") ||
+         assignment.starts_with("learner.precision=") ||
          assignment.starts_with("learner.threads=") || assignment.starts_with("replay.keep=");
 }
 
@@ -95,13 +103,13 @@ void ApplyResumeOptions(const TrainOptions& options, int cores, Config* config) 
     if (!assignment.starts_with("env_steps=") && !assignment.starts_with("stop.") &&
         !SetsForMachine(assignment)) {
       throw UsageError(
-          "--set {}: a resumed run takes env_steps, stop.*, learner.precision, learner.threads and "
-          "replay.keep only",
+          "--set {}: a resumed run takes env_steps, stop.*, learner.device, learner.precision, "
+          "learner.threads and replay.keep only",
           assignment);
     }
   }
   ApplyAssignments(options.set, config);
-  config->learner.threads = LearnerThreads(*config, cores);
+  config->learner.threads = ThreadsOf(*config, cores);
   Validate(*config);
 }
 

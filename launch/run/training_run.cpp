@@ -18,6 +18,7 @@
 #include "common/config/run_files.h"
 #include "common/dds/bus.h"
 #include "common/link/plane_hub.h"
+#include "common/run_folder/run_file_names.h"
 #include "launch/processes/detachment.h"
 #include "launch/processes/process_plan.h"
 #include "launch/processes/run_hosts.h"
@@ -84,6 +85,8 @@ void WriteStartFiles(const fs::path& run, const ClusterAddress& address, RunRequ
   request->meta.privileged_inputs =
       PrivilegedInputsOf(request->config.config, request->config.spec);
   WriteClusterAddress(run, address);
+  std::error_code none;
+  fs::remove(run / kLearnerDeviceFile, none);  // losses of GPUs count from this start on
 }
 
 // Trains in `folder` until the run ends, then evaluates it. `detachment` is null if the run stays

@@ -102,6 +102,15 @@ Cell Batches(const Process& process) {
   return shared ? Text(*shared > 0 ? "memory" : "network") : Cell();
 }
 
+// The use of the learner's GPU: "41 %, 3.2 of 80 GB".
+Cell Gpu(const Process& process) {
+  const auto used = Get(process, "card_memory_mb"), size = Get(process, "card_memory_size_mb");
+  if (!used || !size) return {};
+  const auto busy = Get(process, "card_busy");
+  const std::string share = busy ? fmt::format("{:.0f} %, ", 100 * *busy) : "";
+  return {fmt::format("{}{:.1f} of {:.0f} GB", share, *used / 1000, *size / 1000), busy};
+}
+
 // The stage that took most of the last second.
 Cell Busiest(const Process& process) {
   constexpr std::string_view kPrefix = "share_";
@@ -127,6 +136,8 @@ struct Column {
   const char* meaning;
 };
 
+constexpr char kGpuColumn[] = "GPU";
+
 constexpr Column kColumns[] = {
     {"PROCESS", [](const Process& p) { return Text(fmt::format("{}-{}", p.role, p.id)); }, 13,
      "role and number"},
@@ -142,6 +153,7 @@ constexpr Column kColumns[] = {
     {"CREDIT", Credit, 6, "records that may be sent, or requests without an answer"},
     {"BLOCKED", Blocked, 9, "share of the last second spent held (in, out) or waiting"},
     {"BATCHES", Batches, 7, "path of batches to the learner"},
+    {kGpuColumn, Gpu, 0, "use and memory of the learner's GPU; only if it has one"},
     {"LAG 50/90/99", [](const Process& p) { return Quantiles(p, "policy_lag", "{:.0f}"); }, 12,
      "policy lag of stored records in updates, quantiles"},
     {"DATA AGE 50/90/99",
@@ -222,11 +234,23 @@ TopWidths LeastWidths() {
   return widths;
 }
 
+size_t ColumnOf(std::string_view name) {
+  return static_cast<size_t>(std::ranges::find(kColumns, name, &Column::name) -
+                             std::begin(kColumns));
+}
+
+bool HasGpu(const RunViewMessage& view) {
+  return std::ranges::any_of(view.processes, [](const Process& process) {
+    return Get(process, "card_memory_mb").has_value();
+  });
+}
+
 // Sets widths of columns to 0 until a row fits, beginning with details that --json shows.
 void LeaveOutColumns(size_t most, TopWidths* widths) {
   constexpr std::string_view kFirstToGo[] = {
-      "FILES", "BATCHES", "DATA s 50/90/99", "PID",  "HOST", "DATA AGE 50/90/99", "AGE", "CREDIT",
-      "MB",    "CPU",     "LAG 50/90/99",    "QUEUE"};
+      "FILES", "BATCHES",           kGpuColumn, "DATA s 50/90/99", "PID",
+      "HOST",  "DATA AGE 50/90/99", "AGE",      "CREDIT",          "MB",
+      "CPU",   "LAG 50/90/99",      "QUEUE"};
   const auto needed = [&] {
     size_t sum = widths->back();
     for (size_t i = 0; i + 1 < widths->size(); ++i) {
@@ -236,8 +260,7 @@ void LeaveOutColumns(size_t most, TopWidths* widths) {
   };
   for (const std::string_view name : kFirstToGo) {
     if (needed() <= most) return;
-    const auto column = std::ranges::find(kColumns, name, &Column::name);
-    widths->at(static_cast<size_t>(column - std::begin(kColumns))) = 0;
+    widths->at(ColumnOf(name)) = 0;
   }
 }
 
@@ -270,6 +293,7 @@ std::vector<std::string> FormatTop(const RunViewMessage& view, const TopOrder& o
   Widen(heading, &now);
   for (const Row& row : rows) Widen(row, &now);
   if (widths != nullptr) *widths = now;
+  if (!HasGpu(view)) now[ColumnOf(kGpuColumn)] = 0;
   LeaveOutColumns(most, &now);
   lines.push_back(CutToColumns(Rendered(heading, now), most));
   for (const Row& row : rows) lines.push_back(CutToColumns(Rendered(row, now), most));
@@ -283,6 +307,10 @@ TopCells MakeTopCells(const RunViewMessage& view) {
     std::vector<std::string>& texts = cells.rows.emplace_back();
     for (const Cell& cell : row) texts.push_back(cell.text);
   }
+  if (HasGpu(view)) return cells;
+  const auto gpu = static_cast<std::ptrdiff_t>(ColumnOf(kGpuColumn));
+  cells.columns.erase(cells.columns.begin() + gpu);
+  for (std::vector<std::string>& texts : cells.rows) texts.erase(texts.begin() + gpu);
   return cells;
 }
 

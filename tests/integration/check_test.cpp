@@ -30,7 +30,7 @@ TEST(Check, AMachineThatBuildsShoalCanTrain) {
     EXPECT_NE(check.at("finding"), "") << names.back();
     EXPECT_EQ(check.at("verdict") == "OK", check.at("advice") == "") << names.back();
   }
-  EXPECT_EQ(names, (std::vector<std::string>{"system", "cpu", "cores", "preset", "rendering",
+  EXPECT_EQ(names, (std::vector<std::string>{"system", "cpu", "cores", "gpu", "preset", "rendering",
                                              "opengl", "physics", "dds loopback", "disk", "memory",
                                              "shared memory", "training"}));
   int left = 0;

@@ -193,6 +193,7 @@ TEST(ConfigHash, ChangesWithWhatIsComputedButNotWithNameOrLength) {
   EXPECT_EQ(hash("run_name=other"), base);
   EXPECT_EQ(hash("env_steps=5"), base);
   EXPECT_EQ(hash("stop.success=2"), base);
+  EXPECT_EQ(hash("learner.device=auto"), base) << "a resumed run may change its device";
 }
 
 TEST(Validate, AcceptsTheDefaults) { EXPECT_NO_THROW(Validate(Config())); }

@@ -52,7 +52,7 @@ TEST(FindMeantKey, SaysWhereNoKeyHasTheSameMeaning) {
   EXPECT_FALSE(FindMeantKey("n_envs").same);
   EXPECT_THAT(FindMeantKey("n_envs").note, HasSubstr("each actor"));
   EXPECT_EQ(FindMeantKey("gpu").key, "");
-  EXPECT_THAT(FindMeantKey("gpu").note, HasSubstr("CPU"));
+  EXPECT_THAT(FindMeantKey("gpu").note, HasSubstr("learner.device=cuda"));
   EXPECT_EQ(FindMeantKey("warp_drive").key, "");
   EXPECT_EQ(FindMeantKey("warp_drive").note, "");
 }
@@ -92,7 +92,9 @@ TEST(FindMeantKey, AnUnknownKeyIsRefusedWithTheOneThatIsMeant) {
             "--set: unknown key 'n_envs', nearest in meaning is 'envs_per_actor', which counts the "
             "environments of each actor, not of all");
   EXPECT_EQ(AssignmentRefusal("device=cuda"),
-            "--set: unknown key 'device', the learner computes on CPU cores (learner.threads)");
+            "--set: unknown key 'device', it is called 'learner.device' here");
+  EXPECT_EQ(AssignmentRefusal("gpus=1"),
+            "--set: unknown key 'gpus', a GPU is chosen by learner.device=cuda");
   EXPECT_EQ(AssignmentRefusal("sed=1"), "--set: unknown key 'sed', nearest is 'seed'");
 }
 

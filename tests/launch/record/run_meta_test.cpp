@@ -7,6 +7,7 @@
 
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/run_folder/learner_device_file.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal::launch {
@@ -148,6 +149,27 @@ TEST(FormatFirstSuccess, SaysThatTheFinalEvaluationIsLower) {
   meta.final_success = 0.94;
   EXPECT_EQ(FormatFirstSuccess(meta, 2),
             first + "; the final evaluation, of other episodes, is below that: 94.0 %");
+}
+
+TEST(RunMeta, NamesTheProcessorOfTheLearner) {
+  const TemporaryFolder run;
+  const auto written = [&] {
+    WriteRunMeta(run.path(), Config(), RunMeta());
+    return nlohmann::json::parse(ReadFile(run.path() / "meta.json"));
+  };
+  EXPECT_EQ(written().at("learner_device"),
+            nlohmann::json::parse(R"({"device": "cpu", "reason": null})"));
+  WriteLearnerDevice(run.path(), {.precision = "f32", .reason = "no driver"});
+  EXPECT_EQ(written().at("learner_device").at("reason"), "no driver");
+  WriteLearnerDevice(run.path(), {.device = "cuda",
+                                  .card = "GPU X",
+                                  .driver = "580.1",
+                                  .memory_bytes = 85'040'000'000,
+                                  .precision = "bf16",
+                                  .losses = 1});
+  EXPECT_EQ(written().at("learner_device"), nlohmann::json::parse(R"({
+    "device": "cuda", "card": "GPU X", "driver": "580.1", "memory_gb": 85.0, "losses": 1})"));
+  EXPECT_EQ(written().at("precision"), "bf16");
 }
 
 }  // namespace

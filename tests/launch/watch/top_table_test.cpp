@@ -196,7 +196,8 @@ TEST(TopTable, TheJsonHasTheSchemaAndEveryFigureByItsName) {
 
 TEST(TopTable, CellsAreThoseOfTheTable) {
   const TopCells cells = MakeTopCells(View());
-  ASSERT_EQ(cells.columns.size(), static_cast<size_t>(TopColumns()));
+  // Without the column of a GPU.
+  ASSERT_EQ(cells.columns.size(), static_cast<size_t>(TopColumns() - 1));
   ASSERT_EQ(cells.rows.size(), View().processes.size());
   const std::vector<std::string> lines = FormatTop(View(), TopOrder(), 0);
   for (size_t i = 0; i < cells.rows.size(); ++i) {
@@ -205,6 +206,24 @@ TEST(TopTable, CellsAreThoseOfTheTable) {
     }
   }
   EXPECT_EQ(lines[1], AdviceOfView(View()));
+}
+
+TEST(TopTable, HasAColumnForTheGpuIfTheLearnerUsesOne) {
+  RunViewMessage view = View();
+  const auto table = [&] { return FormatTop(view, TopOrder(), 0); };
+  EXPECT_THAT(table(), Not(::testing::Contains(HasSubstr("GPU"))));
+  EXPECT_THAT(MakeTopCells(view).columns, Not(::testing::Contains("GPU")));
+  for (const auto& [name, value] :
+       {std::pair("card_memory_mb", 3210.0), std::pair("card_memory_size_mb", 85'000.0),
+        std::pair("card_busy", 0.41)}) {
+    view.processes[3].names.emplace_back(name);
+    view.processes[3].values.push_back(value);
+  }
+  EXPECT_THAT(table(), ::testing::Contains(HasSubstr("GPU")));
+  EXPECT_THAT(table(), ::testing::Contains(HasSubstr("41 %, 3.2 of 85 GB")));
+  const TopCells cells = MakeTopCells(view);
+  EXPECT_THAT(cells.columns, ::testing::Contains("GPU"));
+  for (const auto& row : cells.rows) EXPECT_EQ(row.size(), cells.columns.size());
 }
 
 }  // namespace
