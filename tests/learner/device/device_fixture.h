@@ -20,6 +20,7 @@ namespace shoal::learner::device {
 struct AgentCase {
   std::string name;
   std::function<void(Config*, ObservationSpec*)> set;
+  uint64_t updates = 200;  // after which networks are compared
 };
 
 inline void PrintTo(const AgentCase& each, std::ostream* out) { *out << each.name; }
@@ -30,11 +31,15 @@ inline void WithoutPixels(ObservationSpec* spec) {
   spec->stack = 1;
 }
 
+// Maps and weights have padding, as on a card.
+inline constexpr HostDevice::Options kPadding{.f32_channels = 4, .bf16_channels = 8};
+
 // An agent with an engine on a device in host memory.
 struct OnDevice {
   OnDevice(const Config& config, const ObservationSpec& spec, nn::Precision precision,
-           int in_flight = 0)
-      : engine(&device, precision, config.learner.batch, in_flight),
+           int in_flight = 0, const HostDevice::Options& options = kPadding)
+      : device(options),
+        engine(&device, precision, config.learner.batch, in_flight),
         agent(FindAlgorithm(config.learner.algorithm).make(config, spec, &engine)) {}
 
   HostDevice device;
