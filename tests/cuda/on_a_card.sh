@@ -50,7 +50,7 @@ else
   short=(--preset fetch-reach-fast --set eval.final_episodes=5 --set eval.interval=1000000)
   trial=()
 fi
-short_steps=1200
+short_steps=12000
 if [[ $device == cuda ]]; then short_steps=8000; fi
 
 # Seconds that are left for a step that may take $1 seconds.
