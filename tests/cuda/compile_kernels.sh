@@ -37,7 +37,7 @@ fi
 awk '
   /Compiling entry function/ {
     name = $0; sub(/.*RunKernelI/, "", name); sub(/EEvT_.*/, "", name)
-    sub(/^NS1_[0-9]+/, "", name); target = $0
+    sub(/^NS1_[0-9]+/, "", name); sub(/E$/, "", name); target = $0
   }
   /bytes spill stores/ { stack = $1; spills = $5 + $9 }
   /Used [0-9]+ registers/ && target ~ /sm_90/ {

@@ -194,13 +194,18 @@ struct AdamOptions {
   }
 };
 
+// Stores number i for an undo.
+SHOAL_KERNEL void KeepNumber(const AdamSet& set, int64_t i) {
+  set.former_m[i] = set.m[i];
+  set.former_v[i] = set.v[i];
+  set.former_value[i] = set.value[i];
+}
+
 // One step of number i.
 SHOAL_KERNEL void StepNumber(const AdamSet& set, int64_t i, float gradient, const StepSize& size) {
   constexpr float kB1 = 0.9f, kC1 = float(1 - 0.9), kB2 = 0.999f, kC2 = float(1 - 0.999);
   const float g = gradient * size.clip, m = set.m[i], v = set.v[i], w = set.value[i];
-  set.former_m[i] = m;
-  set.former_v[i] = v;
-  set.former_value[i] = w;
+  KeepNumber(set, i);
   const float next_m = kB1 * m + kC1 * g;
   const float next_v = kB2 * v + kC2 * g * g;
   set.m[i] = next_m;
@@ -418,7 +423,10 @@ struct StepTemperature {
   template <class Block>
   SHOAL_KERNEL void Run(Block& block, Shared&) const {
     block.Threads([&](int thread) {
-      if (thread != 0 || !Moves(*flags)) return;
+      if (!Moves(*flags)) return;
+      // An undo restores the whole set.
+      ForAll<kThreads>(thread, set.size, [&](int64_t i) { KeepNumber(set, i); });
+      if (thread != 0) return;
       StepNumber(set, 0, float(*loss), options.SizeOf(state->steps + 1, 0));
       set.Set(0, Most(set.value[0], least));
       ++state->steps;

@@ -236,8 +236,26 @@ TEST_F(OptimiserKernels, TheTemperatureStepsAndKeepsItsBound) {
     EXPECT_EQ(state_->steps, i + 1);
   }
   EXPECT_EQ(own.value[0], least);
-  flags_->finite = 0;
+  // An undo restores the temperature, and keeps the zeros behind it.
+  const std::vector<float> values = ValuesOf(own.value, own.size);
+  ASSERT_GT(own.size, 1);
   *loss = -5;
+  Run(StepTemperature{.set = own,
+                      .options = {.rate = 0.1, .epsilon = 1e-8},
+                      .loss = loss,
+                      .least = least,
+                      .state = state_,
+                      .flags = flags_});
+  EXPECT_GT(own.value[0], least);
+  flags_->finite = 0;
+  Run(EndUpdate{.set_count = 1,
+                .sets = {own},
+                .states = {state_},
+                .counts = {true},
+                .flags = flags_,
+                .finished = Counters(1)});
+  EXPECT_EQ(ValuesOf(own.value, own.size), values);
+  EXPECT_EQ(ValuesOf(own.m, own.size).back(), 0);
   Run(StepTemperature{.set = own,
                       .options = {.rate = 0.1, .epsilon = 1e-8},
                       .loss = loss,
