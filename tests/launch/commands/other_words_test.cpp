@@ -83,8 +83,8 @@ TEST_F(OtherWords, ADashBehindAFlagForJsonIsStandardOutputWhichItIsAnyway) {
 
 TEST_F(OtherWords, AnOptionThatNoKeyHasTheMeaningOfIsNamed) {
   EXPECT_EQ(Refusal({"train", "--gpu"}),
-            "train: unknown option '--gpu'; the learner computes on CPU cores "
-            "(learner.threads) (see shoal train --help)");
+            "train: unknown option '--gpu'; a GPU is chosen by learner.device=cuda "
+            "(see shoal train --help)");
   EXPECT_THAT(Refusal({"train", "--num-envs", "8"}),
               HasSubstr("'--num-envs'; nearest in meaning is --set envs_per_actor=VALUE, which"));
   EXPECT_THAT(Refusal({"train", "--presset", "p"}), HasSubstr("; nearest is '--preset'"));
