@@ -46,7 +46,7 @@ kernels::CriticFigures FiguresOf(const CriticNumbers& numbers) {
 // copied as a whole.
 class BatchPlaces {
  public:
-  BatchPlaces(const BatchView& batch, Landing* landing) : batch_(batch), landing_(landing) {
+  BatchPlaces(const BatchView& batch, Landing* landing) : landing_(landing) {
     if (batch.data == nullptr || batch.first_row != 0) return;
     if (batch.rows() != size_t(batch.schema->batch())) return;
     block_ = {batch.data, batch.schema->total_bytes()};
@@ -69,7 +69,6 @@ class BatchPlaces {
     return landing_->Add(values);
   }
 
-  const BatchView& batch_;
   Landing* const landing_;
   std::span<const uint8_t> block_;
   uint8_t* place_ = nullptr;

@@ -19,7 +19,11 @@ while (($# > 0)); do
   shift
 done
 here=$(dirname "$(readlink -f "$0")")
-work=$(mktemp -d)
+# `shoal check` fails without room for a full replay (4.3 GB), so a small /tmp is not used.
+for folder in "${TMPDIR:-/tmp}" /var/tmp /dev/shm; do
+  (($(df --output=avail --block-size=1M "$folder" | tail -1) > 6000)) && break
+done
+work=$(mktemp -d -p "$folder")
 trap 'rm -rf "$work"' EXIT
 fail() { echo "bundle_test: $*" >&2; exit 1; }
 
