@@ -163,7 +163,7 @@ void DenseLayer::BackwardFunction(int i, const float* output_gradient, bool para
                                                     .dy = output_gradient,
                                                     .y = output_ + first,
                                                     .xhat = normalised_ + first,
-                                                    .dx = gradient_ + first,
+                                                    .dx = {gradient_ + first, nullptr},
                                                     .activation = ActivationOf(activation_),
                                                     .dweight = function.norm_weight.gradient,
                                                     .dbias = function.norm_bias.gradient,

@@ -163,8 +163,7 @@ void DeviceActor::BackwardMlp() {
 
 DeviceReadout::DeviceReadout(Workspace* workspace, const std::string& name,
                              const DeviceFeatures& trunk, nn::ParameterSet* parameters)
-    : workspace_(workspace),
-      parameters_(parameters),
+    : parameters_(parameters),
       trunk_(trunk),
       linear_(workspace,
               DeviceParameters::Attach(workspace, ParameterLayout(*parameters), Use::kTraining,

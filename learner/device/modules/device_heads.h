@@ -82,7 +82,6 @@ class DeviceReadout final : public nn::ReadoutNetwork {
   void Backward(nn::Array gradient) override;
 
  private:
-  Workspace* const workspace_;
   nn::ParameterSet* const parameters_;
   const DeviceFeatures& trunk_;
   DenseLayer linear_;
