@@ -129,7 +129,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"OptionOfAnotherProgram",
                 {"shoal", "train", "--gpu", "1"},
                 2,
-                {"unknown option '--gpu'", "CPU"}},
+                {"unknown option '--gpu'", "learner.device=cuda"}},
         Mistake{"KeyAsAnOptionThatItDoesNotTake",
                 {"shoal", "train", "--preset", "fetch-reach-state", "--seed", "x"},
                 2,

@@ -108,8 +108,8 @@ TEST(Gpu, ARunOnAGpuNamesItInItsFilesAndReports) {
   EXPECT_EQ(meta.at("precision"), "f32");
   ExpectBalanced(meta);
   const std::string metrics = ReadFile(run.path() / "metrics.jsonl");
-  EXPECT_THAT(metrics,
-              AllOf(HasSubstr("\"card_busy\":0.25"), HasSubstr("\"card_memory_mb\":1000")));
+  EXPECT_THAT(metrics, AllOf(HasSubstr("\"card_busy\":0.25"), HasSubstr("\"card_memory_mb\":1000"),
+                             HasSubstr("\"card_memory_size_mb\":")));
 }
 
 TEST(Gpu, AutoSaysWhyItTookTheCpu) {

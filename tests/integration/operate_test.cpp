@@ -272,6 +272,8 @@ const std::set<std::string_view> kOfPixels{learner::kFrameSpread.name, learner::
 // Only actors of environments of the user's own report these
 // (Environments.TimeOfTheUsersCodeIsReportedApart).
 const std::set<std::string_view> kOfUserEnvironments{"user_code", "conversion"};
+// Only a learner on a GPU reports these (Gpu.*).
+const std::set<std::string_view> kOfGpus{"card_memory_mb", "card_memory_size_mb", "card_busy"};
 
 TEST(Operate, EveryMetricIsInTheTableOfMetrics) {
   std::set<RoleMetric> seen;
@@ -300,7 +302,9 @@ TEST(Operate, EveryMetricIsInTheTableOfMetrics) {
     if (name == "exit_code" || name == "recent_cores" || metric.kind == MetricKind::kPerStage) {
       continue;
     }
-    if (kOfPixels.contains(name) || kOfUserEnvironments.contains(name)) continue;
+    if (kOfPixels.contains(name) || kOfUserEnvironments.contains(name) || kOfGpus.contains(name)) {
+      continue;
+    }
     const std::string role = metric.role == "all" ? "replay" : std::string(metric.role);
     EXPECT_TRUE(seen.contains({role, reported})) << role << ' ' << reported;
   }
