@@ -94,25 +94,22 @@ struct ConvolutionForward {
   bool operator==(const ConvolutionForward&) const = default;
 };
 
-// dL/dx from dL/dy. If `relu_of` is given, x is the result of a ReLU, relu_of == x, and dx is 0
-// where x is 0: the gradient with respect to the number before the ReLU.
+// dL/dx from dL/dy.
 struct ConvolutionData {
   ConvolutionShape shape;
   const void* dy = nullptr;
   const void* weight = nullptr;
-  const void* relu_of = nullptr;  // null: none
   void* dx = nullptr;
 
   bool operator==(const ConvolutionData&) const = default;
 };
 
-// dL/dweight and dL/dbias, both f32, from x and dL/dy.
+// dL/dweight, f32, from x and dL/dy.
 struct ConvolutionWeights {
   ConvolutionShape shape;
   const void* x = nullptr;
   const void* dy = nullptr;
   float* weight_gradient = nullptr;
-  float* bias_gradient = nullptr;  // (filters); null: none
 
   bool operator==(const ConvolutionWeights&) const = default;
 };

@@ -186,28 +186,19 @@ void ComputeData(const ConvolutionData& convolution) {
     });
     const int64_t first = b * InputOf(shape);
     for (int64_t i = 0; i < InputOf(shape); ++i) {
-      const bool masked = convolution.relu_of != nullptr &&
-                          !(ReadNumber(shape.type, convolution.relu_of, first + i) > 0);
-      WriteNumber(shape.type, masked ? 0.f : image[static_cast<size_t>(i)], first + i,
-                  convolution.dx);
+      WriteNumber(shape.type, image[static_cast<size_t>(i)], first + i, convolution.dx);
     }
   }
 }
 
 void ComputeWeights(const ConvolutionWeights& convolution) {
   const ConvolutionShape& shape = convolution.shape;
-  Matrix weights(shape.filters, PatchOf(shape)), bias(shape.filters, 1);
-  Matrix ones(PixelsOf(shape), 1);
-  std::ranges::fill(ones.values, 1.f);
+  Matrix weights(shape.filters, PatchOf(shape));
   for (int64_t b = 0; b < shape.batch; ++b) {
-    const Matrix gradient = Transposed(OutputGradientOf(shape, convolution.dy, b));
-    AddProduct(gradient, Patches(shape, convolution.x, b), &weights);
-    AddProduct(gradient, ones, &bias);
+    AddProduct(Transposed(OutputGradientOf(shape, convolution.dy, b)),
+               Patches(shape, convolution.x, b), &weights);
   }
   std::ranges::copy(weights.values, convolution.weight_gradient);
-  if (convolution.bias_gradient != nullptr) {
-    std::ranges::copy(bias.values, convolution.bias_gradient);
-  }
 }
 
 }  // namespace shoal::learner::device

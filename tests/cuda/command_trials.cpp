@@ -267,21 +267,17 @@ void TryConvolution(Device* device, const ConvolutionShape& s, const Show& show)
       show);
   Try(
       device, "gradient by input " + name, s.type,
-      {.inputs = {dy, weight, x}, .results = {{s.type, inputs}}},
+      {.inputs = {dy, weight}, .results = {{s.type, inputs}}},
       [&](const auto& in, const auto& out) {
-        return ConvolutionData{
-            .shape = s, .dy = in[0], .weight = in[1], .relu_of = in[2], .dx = out[0]};
+        return ConvolutionData{.shape = s, .dy = in[0], .weight = in[1], .dx = out[0]};
       },
       show);
   Try(
       device, "gradient by weights " + name, s.type,
-      {.inputs = {x, dy}, .results = {{Type::kF32, weights}, {Type::kF32, s.filters}}},
+      {.inputs = {x, dy}, .results = {{Type::kF32, weights}}},
       [&](const auto& in, const auto& out) {
-        return ConvolutionWeights{.shape = s,
-                                  .x = in[0],
-                                  .dy = in[1],
-                                  .weight_gradient = static_cast<float*>(out[0]),
-                                  .bias_gradient = static_cast<float*>(out[1])};
+        return ConvolutionWeights{
+            .shape = s, .x = in[0], .dy = in[1], .weight_gradient = static_cast<float*>(out[0])};
       },
       show);
 }

@@ -315,15 +315,10 @@ int64_t CudaConvolutions::Prepare(const ConvolutionData& command) {
 CudaConvolutions::WeightsWorkspace CudaConvolutions::WorkspaceOf(
     const ConvolutionWeights& command) {
   const Plan* plan = PlanOf(Kind::kWeights, command.shape);
-  const kernels::MapShape shape = KernelShape(command.shape);
-  const int64_t chunks = kernels::PartialColumnSums::Chunks(shape.pixels());
   return {.plan = plan == nullptr ? 0 : Aligned(plan->workspace_bytes),
           .narrow = plan != nullptr && plan->narrow
-                        ? Aligned(shape.weights() * int64_t{sizeof(uint16_t)})
-                        : 0,
-          .sums = command.bias_gradient == nullptr
-                      ? 0
-                      : Aligned(chunks * shape.filters * int64_t{sizeof(float)})};
+                        ? Aligned(KernelShape(command.shape).weights() * int64_t{sizeof(uint16_t)})
+                        : 0};
 }
 
 int64_t CudaConvolutions::Prepare(const ConvolutionWeights& command) {
@@ -357,31 +352,21 @@ void CudaConvolutions::Run(const ConvolutionForward& command, void* workspace) {
 void CudaConvolutions::Run(const ConvolutionData& command, void* workspace) {
   const ConvolutionShape& s = command.shape;
   const Plan* plan = PlanOf(Kind::kData, s);
-  const kernels::Source relu_of = Read(s.type, command.relu_of);
-  const int32_t masked = command.relu_of == nullptr ? 0 : 1;
   if (plan == nullptr) {
     Launch(kernels::ConvolveData{.shape = KernelShape(s),
                                  .dy = Read(s.type, command.dy),
                                  .weight = Read(s.type, command.weight),
-                                 .relu_of = relu_of,
-                                 .masked = masked,
                                  .dx = Write(s.type, command.dx)},
            stream_);
     return;
   }
   plan->Run(handle_, command.dx, command.weight, command.dy, workspace);
-  if (masked == 0) return;
-  Launch(
-      kernels::MaskByRelu{
-          .x = relu_of, .dx = Write(s.type, command.dx), .size = KernelShape(s).inputs()},
-      stream_);
 }
 
 void CudaConvolutions::Run(const ConvolutionWeights& command, void* workspace) {
   const ConvolutionShape& s = command.shape;
   const kernels::MapShape shape = KernelShape(s);
   const Plan* plan = PlanOf(Kind::kWeights, s);
-  const WeightsWorkspace parts = WorkspaceOf(command);
   if (plan == nullptr) {
     Launch(kernels::ConvolveWeights{.shape = shape,
                                     .x = Read(s.type, command.x),
@@ -389,7 +374,7 @@ void CudaConvolutions::Run(const ConvolutionWeights& command, void* workspace) {
                                     .weight_gradient = command.weight_gradient},
            stream_);
   } else if (plan->narrow) {
-    auto* narrow = static_cast<uint16_t*>(After(workspace, parts.plan));
+    auto* narrow = static_cast<uint16_t*>(After(workspace, WorkspaceOf(command).plan));
     plan->Run(handle_, command.x, narrow, command.dy, workspace);
     Launch(
         kernels::WidenToF32{.from = narrow, .to = command.weight_gradient, .size = shape.weights()},
@@ -397,18 +382,6 @@ void CudaConvolutions::Run(const ConvolutionWeights& command, void* workspace) {
   } else {
     plan->Run(handle_, command.x, command.weight_gradient, command.dy, workspace);
   }
-  if (command.bias_gradient == nullptr) return;
-  auto* sums = static_cast<float*>(After(workspace, parts.plan + parts.narrow));
-  Launch(kernels::PartialColumnSums{.dy = Read(s.type, command.dy),
-                                    .rows = shape.pixels(),
-                                    .columns = s.filters,
-                                    .partials = sums},
-         stream_);
-  Launch(kernels::TotalColumnSums{.partials = sums,
-                                  .chunks = kernels::PartialColumnSums::Chunks(shape.pixels()),
-                                  .columns = s.filters,
-                                  .sums = command.bias_gradient},
-         stream_);
 }
 
 }  // namespace shoal::learner::device

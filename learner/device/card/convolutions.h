@@ -2,7 +2,7 @@
 // Convolutions (commands.h) on a card: in bf16 by cuDNN's graph interface, in f32 by kernels of
 // map_kernels.h, because cuDNN might use TF32.
 //
-// cuDNN computes the plain convolution; bias, ReLU and bias gradients are kernels. Only engines of
+// cuDNN computes the plain convolution; bias and ReLU are kernels. Only engines of
 // cuDNN with a fixed order of sums are used. If cuDNN has no engine for a shape, the slower kernel
 // of map_kernels.h computes it, and a line on stderr says so once.
 #pragma once
@@ -44,10 +44,10 @@ class CudaConvolutions {
   // The plan of cuDNN; null if it has none.
   Plan* PlanOf(Kind kind, const ConvolutionShape& shape);
   std::unique_ptr<Plan> Choose(Kind kind, const ConvolutionShape& shape) const;
-  // Parts of the workspace of ConvolutionWeights, in bytes: cuDNN's, the gradient in bf16, sums.
+  // Parts of the workspace of ConvolutionWeights, in bytes: cuDNN's, and the gradient in bf16.
   struct WeightsWorkspace {
-    int64_t plan, narrow, sums;
-    int64_t total() const { return plan + narrow + sums; }
+    int64_t plan, narrow;
+    int64_t total() const { return plan + narrow; }
   };
   WeightsWorkspace WorkspaceOf(const ConvolutionWeights& command);
 

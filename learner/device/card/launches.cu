@@ -19,14 +19,7 @@ void Launch(const kernels::Kernel& kernel, cudaStream_t stream) {
   std::visit([stream](const auto& one) { LaunchOne(one, stream); }, kernel);
 }
 void Launch(const kernels::AddBias& kernel, cudaStream_t stream) { LaunchOne(kernel, stream); }
-void Launch(const kernels::MaskByRelu& kernel, cudaStream_t stream) { LaunchOne(kernel, stream); }
 void Launch(const kernels::WidenToF32& kernel, cudaStream_t stream) { LaunchOne(kernel, stream); }
-void Launch(const kernels::PartialColumnSums& kernel, cudaStream_t stream) {
-  LaunchOne(kernel, stream);
-}
-void Launch(const kernels::TotalColumnSums& kernel, cudaStream_t stream) {
-  LaunchOne(kernel, stream);
-}
 void Launch(const kernels::ConvolveForward& kernel, cudaStream_t stream) {
   LaunchOne(kernel, stream);
 }

@@ -16,10 +16,7 @@ void RequireLaunched(cudaError_t status);
 // Launches one kernel on the stream. Throws Error (kDevice).
 void Launch(const kernels::Kernel& kernel, cudaStream_t stream);
 void Launch(const kernels::AddBias& kernel, cudaStream_t stream);
-void Launch(const kernels::MaskByRelu& kernel, cudaStream_t stream);
 void Launch(const kernels::WidenToF32& kernel, cudaStream_t stream);
-void Launch(const kernels::PartialColumnSums& kernel, cudaStream_t stream);
-void Launch(const kernels::TotalColumnSums& kernel, cudaStream_t stream);
 void Launch(const kernels::ConvolveForward& kernel, cudaStream_t stream);
 void Launch(const kernels::ConvolveData& kernel, cudaStream_t stream);
 void Launch(const kernels::ConvolveWeights& kernel, cudaStream_t stream);

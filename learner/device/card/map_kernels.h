@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kernels for convolutions on a card: the parts that cuDNN's plain convolutions leave out (bias,
-// ReLU, bias gradients), and convolutions in f32, where cuDNN might use TF32. Their form is that of
-// kernels/frame.h, so tests run them on the host.
+// Kernels for convolutions on a card: bias and ReLU, which cuDNN's plain convolutions leave out,
+// and convolutions in f32, where cuDNN might use TF32. Their form is that of kernels/frame.h, so
+// tests run them on the host.
 //
 // Maps are (B, H, W, C), outputs (B, OH, OW, N), weights (N, K, K, C); commands.h has the formulas.
 #pragma once
@@ -67,25 +67,6 @@ struct AddBias {
   }
 };
 
-// dx[i] = 0 where x[i] = 0, the result of a ReLU.
-struct MaskByRelu {
-  static constexpr int kThreads = kElementThreads;
-  using Shared = NoShared;
-
-  Source x;
-  InPlace dx;
-  int64_t size = 0;
-
-  int blocks() const { return BlocksForElements(size); }
-
-  template <class Block>
-  SHOAL_KERNEL void Run(Block& block, Shared&) const {
-    ForElements(block, block.index(), size, [&](int64_t i) {
-      if (!(x[i] > 0)) dx.Set(i, 0);
-    });
-  }
-};
-
 // to[i] = from[i] in f32.
 struct WidenToF32 {
   static constexpr int kThreads = kElementThreads;
@@ -100,75 +81,6 @@ struct WidenToF32 {
   template <class Block>
   SHOAL_KERNEL void Run(Block& block, Shared&) const {
     ForElements(block, block.index(), size, [&](int64_t i) { to[i] = FromBf16(from[i]); });
-  }
-};
-
-// Column sums of dy (rows, columns), first half: partials (chunks, columns) of neighbouring rows.
-// Each block sums kColumns columns of one chunk, kGroups rows at a time.
-struct PartialColumnSums {
-  static constexpr int kColumns = 32, kGroups = 8, kThreads = kColumns * kGroups;
-  static constexpr int kRowsOfChunk = 512;
-  struct Shared {
-    float of_thread[kThreads];
-  };
-
-  Source dy;
-  int64_t rows = 0;
-  int32_t columns = 0;
-  float* partials = nullptr;
-
-  static SHOAL_EVERYWHERE int64_t Chunks(int64_t rows) { return CeilDivide(rows, kRowsOfChunk); }
-  SHOAL_EVERYWHERE int64_t tiles() const { return CeilDivide(columns, kColumns); }
-  int blocks() const { return int(Chunks(rows) * tiles()); }
-
-  template <class Block>
-  SHOAL_KERNEL void Run(Block& block, Shared& shared) const {
-    const int64_t chunk = block.index() / tiles();
-    const int64_t first_column = block.index() % tiles() * kColumns;
-    block.Threads([&](int thread) {
-      const int64_t column = first_column + thread % kColumns;
-      const int64_t end = Least(rows, (chunk + 1) * kRowsOfChunk);
-      float sum = 0;
-      if (column < columns) {
-        for (int64_t row = chunk * kRowsOfChunk + thread / kColumns; row < end; row += kGroups) {
-          sum += dy[row * columns + column];
-        }
-      }
-      shared.of_thread[thread] = sum;
-    });
-    block.Threads([&](int thread) {
-      const int64_t column = first_column + thread;
-      if (thread >= kColumns || column >= columns) return;
-      float sum = 0;
-      for (int group = 0; group < kGroups; ++group) {
-        sum += shared.of_thread[group * kColumns + thread];
-      }
-      partials[chunk * columns + column] = sum;
-    });
-  }
-};
-
-// Second half: sums (columns) of the partials.
-struct TotalColumnSums {
-  static constexpr int kThreads = kElementThreads;
-  using Shared = NoShared;
-
-  const float* partials = nullptr;
-  int64_t chunks = 0;
-  int32_t columns = 0;
-  float* sums = nullptr;
-
-  int blocks() const { return BlocksForElements(columns); }
-
-  template <class Block>
-  SHOAL_KERNEL void Run(Block& block, Shared&) const {
-    ForElements(block, block.index(), columns, [&](int64_t column) {
-      double sum = 0;
-      for (int64_t chunk = 0; chunk < chunks; ++chunk) {
-        sum += double(partials[chunk * columns + column]);
-      }
-      sums[column] = float(sum);
-    });
   }
 };
 
@@ -218,8 +130,6 @@ struct ConvolveData {
 
   MapShape shape{};
   Source dy, weight;
-  Source relu_of{};  // read if `masked`
-  int32_t masked = 0;
   InPlace dx;
 
   int blocks() const { return BlocksForElements(shape.inputs()); }
@@ -227,10 +137,6 @@ struct ConvolveData {
   template <class Block>
   SHOAL_KERNEL void Run(Block& block, Shared&) const {
     ForElements(block, block.index(), shape.inputs(), [&](int64_t index) {
-      if (masked != 0 && !(relu_of[index] > 0)) {
-        dx.Set(index, 0);
-        return;
-      }
       const int c = int(index % shape.channels);
       const int64_t pixel = index / shape.channels;
       const int w = int(pixel % shape.width);
@@ -261,7 +167,7 @@ struct ConvolveData {
   }
 };
 
-// The weights' half of ConvolutionWeights, one weight for each block.
+// ConvolutionWeights, one weight for each block.
 struct ConvolveWeights {
   static constexpr int kThreads = 256;
   using Sum = Sums<1, float>;

@@ -92,19 +92,22 @@ void DeviceEncoder::Build(const nn::NetworkPlan& plan, const DeviceParameters& p
                        .source = source,
                        .source_gradient = source_gradient,
                        .output = NewMap(numbers(layer.output)),
-                       .gradient = trained ? NewMap(numbers(layer.output)) : nullptr});
+                       .gradient = trained ? NewMap(numbers(layer.output)) : nullptr,
+                       .sums = trained ? SumsOf(shape) : kernels::ColumnSums{}});
     source = layers_.back().output;
     source_gradient = layers_.back().gradient;
   }
   const nn::MapShape& map = plan.output();
   features_.emplace(workspace_->compute_type(), map, workspace_->PaddedChannels(map.channels),
                     source, source_gradient);
-  if (!trained) return;
-  const ConvolutionShape& last = layers_.back().shape;
-  last_sums_ = {.rows = int64_t{last.batch} * last.output_height * last.output_width,
-                .columns = last.filters};
-  last_sums_.partials = workspace_->New<float>(last_sums_.PartialsSize());
-  last_sums_.finished = workspace_->New<int32_t>(last_sums_.groups());
+}
+
+kernels::ColumnSums DeviceEncoder::SumsOf(const ConvolutionShape& shape) const {
+  kernels::ColumnSums sums{.rows = int64_t{shape.batch} * shape.output_height * shape.output_width,
+                           .columns = shape.filters};
+  sums.partials = workspace_->New<float>(sums.PartialsSize());
+  sums.finished = workspace_->New<int32_t>(sums.groups());
+  return sums;
 }
 
 void DeviceEncoder::Forward(nn::Frames frames, nn::Statistics) {
@@ -133,40 +136,36 @@ void DeviceEncoder::Forward(nn::Frames frames, nn::Statistics) {
   }
 }
 
-// The heads write the gradient of the features, which follow a ReLU.
-void DeviceEncoder::MaskLastGradient() {
-  const Layer& last = layers_.back();
-  const bool f32 = last.shape.type == Type::kF32;
+// Turns the gradient of the layer's output into that of the numbers before its ReLU, and computes
+// the gradient of the bias.
+void DeviceEncoder::BackwardRelu(const Layer& layer) {
+  const bool f32 = layer.shape.type == Type::kF32;
   const auto source = [f32](const void* map) {
     return kernels::Source{f32 ? static_cast<const float*>(map) : nullptr,
                            f32 ? nullptr : static_cast<const uint16_t*>(map)};
   };
   workspace_->Add(
-      kernels::ActivationBackward{.sums = last_sums_,
-                                  .dy = source(last.gradient),
-                                  .y = source(last.output),
+      kernels::ActivationBackward{.sums = layer.sums,
+                                  .dy = source(layer.gradient),
+                                  .y = source(layer.output),
                                   .activation = kernels::Activation::kRelu,
-                                  .dx = {f32 ? static_cast<float*>(last.gradient) : nullptr,
-                                         f32 ? nullptr : static_cast<uint16_t*>(last.gradient)},
-                                  .dbias = last.bias.gradient});
+                                  .dx = {f32 ? static_cast<float*>(layer.gradient) : nullptr,
+                                         f32 ? nullptr : static_cast<uint16_t*>(layer.gradient)},
+                                  .dbias = layer.bias.gradient});
 }
 
 void DeviceEncoder::Backward() {
-  MaskLastGradient();
   for (size_t i = layers_.size(); i-- > 0;) {
     const Layer& layer = layers_[i];
-    // The mask has computed the last layer's gradient of the bias.
-    const bool last = i + 1 == layers_.size();
+    BackwardRelu(layer);
     workspace_->Add(ConvolutionWeights{.shape = layer.shape,
                                        .x = layer.source,
                                        .dy = layer.gradient,
-                                       .weight_gradient = layer.weight.gradient,
-                                       .bias_gradient = last ? nullptr : layer.bias.gradient});
+                                       .weight_gradient = layer.weight.gradient});
     if (layer.source_gradient == nullptr) continue;
     workspace_->Add(ConvolutionData{.shape = layer.shape,
                                     .dy = layer.gradient,
                                     .weight = layer.weight.As(layer.shape.type),
-                                    .relu_of = layer.source,
                                     .dx = layer.source_gradient});
   }
 }

@@ -33,12 +33,14 @@ class DeviceEncoder final : public nn::EncoderNetwork {
     Tensor weight, bias;
     const void* source;  // map that the layer reads, and its gradient (null: none)
     void* source_gradient;
-    void *output, *gradient;  // map; gradient: null in inference
+    void *output, *gradient;   // map; gradient: null in inference
+    kernels::ColumnSums sums;  // over the map's pixels; not in inference
   };
 
   void Build(const nn::NetworkPlan& plan, const DeviceParameters& parameters, bool trained);
   void* NewMap(int64_t numbers) const;
-  void MaskLastGradient();
+  kernels::ColumnSums SumsOf(const ConvolutionShape& shape) const;
+  void BackwardRelu(const Layer& layer);
 
   Workspace* const workspace_;
   nn::ParameterSet* const parameters_;
@@ -46,7 +48,6 @@ class DeviceEncoder final : public nn::EncoderNetwork {
   void* input_;  // (B, h, w, C) output of the pixels layer
   std::vector<Layer> layers_;
   std::optional<DeviceFeatures> features_;
-  kernels::ColumnSums last_sums_;  // over the last map's pixels
 };
 
 }  // namespace shoal::learner::device

@@ -134,49 +134,6 @@ TEST(MapKernels, GradientsAreAdjointToTheConvolution) {
   }
 }
 
-TEST(MapKernels, TheGradientIsZeroWhereTheReluWas) {
-  const MapShape s = Shapes().front();
-  auto x = Noise(s.inputs(), 7);
-  for (float& value : x) value = std::max(0.0F, value);
-  const auto weight = Noise(s.weights(), 8), dy = Noise(s.outputs(), 9);
-  std::vector<float> plain(size_t(s.inputs()), kPoison), masked(size_t(s.inputs()), kPoison);
-  ConvolveData kernel{.shape = s,
-                      .dy = {.f32 = dy.data()},
-                      .weight = {.f32 = weight.data()},
-                      .dx = {.f32 = plain.data()}};
-  RunOnHost(kernel, HostOrder::kForward);
-  kernel.relu_of.f32 = x.data();
-  kernel.masked = 1;
-  kernel.dx.f32 = masked.data();
-  RunOnHost(kernel, HostOrder::kForward);
-  RunOnHost(MaskByRelu{.x = {.f32 = x.data()}, .dx = {.f32 = plain.data()}, .size = s.inputs()},
-            HostOrder::kForward);
-  EXPECT_EQ(plain, masked);
-  for (size_t i = 0; i < x.size(); ++i) EXPECT_EQ(masked[i] == 0, x[i] == 0) << i;
-}
-
-TEST(MapKernels, ColumnSumsAddEveryRow) {
-  const int64_t rows = 2 * PartialColumnSums::kRowsOfChunk + 3;
-  const int32_t columns = PartialColumnSums::kColumns + 5;
-  const auto dy = Noise(rows * columns, 10);
-  std::vector<float> partials(size_t(PartialColumnSums::Chunks(rows) * columns), kPoison);
-  std::vector<float> sums(size_t(columns), kPoison);
-  RunBothOrders(
-      PartialColumnSums{
-          .dy = {.f32 = dy.data()}, .rows = rows, .columns = columns, .partials = partials.data()},
-      &partials);
-  RunOnHost(TotalColumnSums{.partials = partials.data(),
-                            .chunks = PartialColumnSums::Chunks(rows),
-                            .columns = columns,
-                            .sums = sums.data()},
-            HostOrder::kForward);
-  for (int32_t column = 0; column < columns; ++column) {
-    double expected = 0;
-    for (int64_t row = 0; row < rows; ++row) expected += double(dy[size_t(row * columns + column)]);
-    EXPECT_NEAR(sums[size_t(column)], expected, 1e-3) << column;
-  }
-}
-
 TEST(MapKernels, ABiasIsAddedToEveryRowOfItsGroup) {
   // Two groups of 2 rows and 3 columns; rows are 4 numbers apart, groups 10.
   std::vector<float> y(20, -2);
