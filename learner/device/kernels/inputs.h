@@ -194,7 +194,7 @@ struct Standardise {
   template <class Block>
   SHOAL_KERNEL void Run(Block& block, Shared&) const {
     ForElements(block, block.index(), int64_t(rows) * width, [&](int64_t at) {
-      const int j = int(at % width);
+      const int j = int(at) % width;  // a division of 64 bits would take registers
       const auto mean = float(moments[1 + j]);
       const double count = moments[0];
       const float variance =
