@@ -6,43 +6,29 @@
 
 #include <functional>
 #include <memory>
-#include <string>
-#include <vector>
+#include <utility>
 
-#include "learner/agent/agent.h"
+#include "learner/agent/wrapped_agent.h"
 
 namespace shoal::learner {
 
-class ResizableAgent final : public Agent {
+class ResizableAgent final : public WrappedAgent {
  public:
   // Makes the agent for `threads` threads; may throw Error.
   using Make = std::function<std::unique_ptr<Agent>(int threads)>;
 
-  ResizableAgent(Make make, int threads)
-      : make_(std::move(make)), threads_(threads), agent_(make_(threads)) {}
+  ResizableAgent(Make make, int threads) : make_(std::move(make)), threads_(threads) {
+    agent_ = make_(threads);
+  }
 
   // Changes the number of threads. No update may be in flight. Takes as long as making an agent.
   // Throws the errors of `make`; the agent is then unchanged.
   void Resize(int threads);
   int threads() const { return threads_; }
 
-  std::vector<UpdateOutcome> Submit(const BatchView& batch,
-                                    const OnStageEnd& on_stage_end) override {
-    return agent_->Submit(batch, on_stage_end);
-  }
-  std::vector<UpdateOutcome> Finish() override { return agent_->Finish(); }
-  uint64_t updates() const override { return agent_->updates(); }
-  nn::TensorMap PolicyTensors() const override { return agent_->PolicyTensors(); }
-  nn::TensorMap AveragedPolicyTensors() const override { return agent_->AveragedPolicyTensors(); }
-  nn::TensorMap AllTensors() const override { return agent_->AllTensors(); }
-  void Restore(const nn::TensorMap& tensors, const std::string& source) override {
-    agent_->Restore(tensors, source);
-  }
-
  private:
   const Make make_;
   int threads_;
-  std::unique_ptr<Agent> agent_;
 };
 
 }  // namespace shoal::learner

@@ -9,6 +9,7 @@
 #include "common/base/error.h"
 #include "common/nn/actor_critic_plan.h"
 #include "learner/agent/algorithms.h"
+#include "learner/agent/wrapped_agent.h"
 #include "learner/device/device_engine.h"
 #include "learner/device/modules/device_encoder.h"
 
@@ -16,29 +17,19 @@ namespace shoal::learner::device {
 namespace {
 
 // An algorithm's agent, and its engine.
-class DeviceAgent final : public Agent {
+class DeviceAgent final : public WrappedAgent {
  public:
   DeviceAgent(const Config& config, const ObservationSpec& spec, nn::Precision precision,
               Device* device)
-      : engine_(device, precision, config.learner.batch),
-        agent_(FindAlgorithm(config.learner.algorithm).make(config, spec, &engine_)) {}
-
-  std::vector<UpdateOutcome> Submit(const BatchView& batch,
-                                    const OnStageEnd& on_stage_end) override {
-    return agent_->Submit(batch, on_stage_end);
+      : engine_(device, precision, config.learner.batch) {
+    agent_ = FindAlgorithm(config.learner.algorithm).make(config, spec, &engine_);
   }
-  std::vector<UpdateOutcome> Finish() override { return agent_->Finish(); }
-  uint64_t updates() const override { return agent_->updates(); }
-  nn::TensorMap PolicyTensors() const override { return agent_->PolicyTensors(); }
-  nn::TensorMap AveragedPolicyTensors() const override { return agent_->AveragedPolicyTensors(); }
-  nn::TensorMap AllTensors() const override { return agent_->AllTensors(); }
-  void Restore(const nn::TensorMap& tensors, const std::string& source) override {
-    agent_->Restore(tensors, source);
-  }
+  ~DeviceAgent() override { agent_.reset(); }  // it borrows the engine
+  DeviceAgent(const DeviceAgent&) = delete;
+  DeviceAgent& operator=(const DeviceAgent&) = delete;
 
  private:
   DeviceEngine engine_;
-  const std::unique_ptr<Agent> agent_;
 };
 
 }  // namespace

@@ -21,6 +21,7 @@
 #include "common/run_folder/run_file_names.h"
 #include "learner/agent/algorithms.h"
 #include "learner/agent/replicated_agent.h"
+#include "learner/agent/wrapped_agent.h"
 #include "learner/training_loop.h"
 #include "tests/learner/engine/deferring_engine.h"
 #include "tests/learner/played_parts.h"
@@ -32,26 +33,15 @@ namespace shoal::learner {
 inline constexpr uint64_t kTrainingSession = 77;
 
 // An agent whose updates take longer than the second between two reports.
-class SlowAgent final : public Agent {
+class SlowAgent final : public WrappedAgent {
  public:
-  explicit SlowAgent(std::unique_ptr<Agent> agent) : agent_(std::move(agent)) {}
+  explicit SlowAgent(std::unique_ptr<Agent> agent) { agent_ = std::move(agent); }
 
   std::vector<UpdateOutcome> Submit(const BatchView& batch,
                                     const OnStageEnd& on_stage_end) override {
     std::this_thread::sleep_for(std::chrono::milliseconds(1100));
-    return agent_->Submit(batch, on_stage_end);
+    return WrappedAgent::Submit(batch, on_stage_end);
   }
-  std::vector<UpdateOutcome> Finish() override { return agent_->Finish(); }
-  uint64_t updates() const override { return agent_->updates(); }
-  nn::TensorMap PolicyTensors() const override { return agent_->PolicyTensors(); }
-  nn::TensorMap AveragedPolicyTensors() const override { return agent_->AveragedPolicyTensors(); }
-  nn::TensorMap AllTensors() const override { return agent_->AllTensors(); }
-  void Restore(const nn::TensorMap& tensors, const std::string& source) override {
-    agent_->Restore(tensors, source);
-  }
-
- private:
-  std::unique_ptr<Agent> agent_;
 };
 
 class TrainingLoopTest : public testing::Test {
