@@ -5,11 +5,14 @@
 #include <type_traits>
 #include <variant>
 
+#include "learner/device/kernels/flags.h"
 #include "learner/device/kernels/gaussian.h"
 #include "learner/device/kernels/inputs.h"
 #include "learner/device/kernels/layers.h"
 #include "learner/device/kernels/losses.h"
 #include "learner/device/kernels/optimiser.h"
+#include "learner/device/kernels/parameter_sets.h"
+#include "learner/device/kernels/temperature.h"
 
 namespace shoal::learner::kernels {
 

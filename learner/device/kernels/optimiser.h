@@ -1,105 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Steps, moves and the finiteness flag (learner/engine/engine.h), over all parameters of an
-// optimiser in one launch. Formulas: common/nn/adam.h.
+// Steps of an optimiser, over all of its parameters in one launch, and their undo. Formulas:
+// common/nn/adam.h.
 //
 // A step changes parameters and moments in place and stores their former values, with which
-// EndUpdate restores them. Steps and moves also write the parameters in bf16 for products.
+// EndUpdate restores them. It also writes the parameters in bf16 for products.
 #pragma once
 
 #include "learner/device/kernels/frame.h"
 #include "learner/device/kernels/numbers.h"
+#include "learner/device/kernels/parameter_sets.h"
 #include "learner/device/kernels/reduce.h"
 #include "learner/device/kernels/state.h"
 
 namespace shoal::learner::kernels {
-
-constexpr int kMostSets = 8;  // parameter sets of one launch
-
-// Finds the set and the block within it. set.size: its number of floats.
-template <class Set>
-SHOAL_KERNEL const Set& SetOfBlock(const Set* sets, int* block) {
-  for (; *block >= BlocksForElements(sets->size); ++sets) *block -= BlocksForElements(sets->size);
-  return *sets;
-}
-
-template <class Set>
-int BlocksForSets(const Set* sets, int count) {
-  int blocks = 0;
-  for (int i = 0; i < count; ++i) blocks += BlocksForElements(sets[i].size);
-  return blocks;
-}
-
-// Begins an update: sets the flag if the batch is finite and updates are not halted, and forgets
-// that optimisers have made steps.
-struct BeginUpdate {
-  static constexpr int kThreads = 32;
-  static constexpr int kMostOptimisers = 8;
-  using Shared = NoShared;
-
-  const int32_t* batch_finite = nullptr;  // 0 or 1
-  Flags* flags = nullptr;
-  int optimiser_count = 0;
-  AdamState* optimisers[kMostOptimisers] = {};
-
-  int blocks() const { return 1; }
-  bool operator==(const BeginUpdate&) const = default;
-
-  template <class Block>
-  SHOAL_KERNEL void Run(Block& block, Shared&) const {
-    block.Threads([&](int thread) {
-      if (thread == 0) {
-        flags->finite = *batch_finite != 0 && flags->halted == 0 ? 1 : 0;
-        flags->batch_finite = *batch_finite;
-        flags->held = 0;
-      }
-      if (thread < optimiser_count) optimisers[thread]->taken = 0;
-    });
-  }
-};
-
-// Clears the flag if one of the numbers is not finite, unless the steps are held.
-struct RequireFinite {
-  static constexpr int kThreads = 32;
-  static constexpr int kMostNumbers = 8;
-  using Shared = NoShared;
-
-  int count = 0;
-  const double* numbers[kMostNumbers] = {};
-  Flags* flags = nullptr;
-
-  int blocks() const { return 1; }
-  bool operator==(const RequireFinite&) const = default;
-
-  template <class Block>
-  SHOAL_KERNEL void Run(Block& block, Shared&) const {
-    block.Threads([&](int thread) {
-      if (thread != 0 || flags->held != 0) return;
-      for (int i = 0; i < count; ++i) {
-        if (!std::isfinite(*numbers[i])) flags->finite = 0;
-      }
-    });
-  }
-};
-
-// Holds the following steps and moves of this update if number > limit.
-struct HoldSteps {
-  static constexpr int kThreads = 32;
-  using Shared = NoShared;
-
-  const double* number = nullptr;
-  double limit = 0;
-  Flags* flags = nullptr;
-
-  int blocks() const { return 1; }
-  bool operator==(const HoldSteps&) const = default;
-
-  template <class Block>
-  SHOAL_KERNEL void Run(Block& block, Shared&) const {
-    block.Threads([&](int thread) {
-      if (thread == 0 && *number > limit) flags->held = 1;
-    });
-  }
-};
 
 // The sum of squares of all gradients of an optimiser.
 struct SumOfSquares {
@@ -302,135 +215,6 @@ struct EndUpdate {
       set.m[i] = set.former_m[i];
       set.v[i] = set.former_v[i];
       set.Set(i, set.former_value[i]);
-    });
-  }
-};
-
-// If the flag is set: target += tau (online - target), for all targets of a move.
-struct MoveTowards {
-  static constexpr int kThreads = kElementThreads;
-  using Shared = NoShared;
-
-  struct Set {
-    int64_t size = 0, trained = 0;  // numbers beyond `trained` are copied: statistics
-    const float* online = nullptr;
-    float* target = nullptr;
-    uint16_t* rounded = nullptr;  // the target in bf16; null: none
-    bool operator==(const Set&) const = default;
-  };
-  int set_count = 0;
-  Set sets[kMostSets] = {};
-  float tau = 0;
-  const Flags* flags = nullptr;
-
-  int blocks() const { return BlocksForSets(sets, set_count); }
-  bool operator==(const MoveTowards&) const = default;
-
-  template <class Block>
-  SHOAL_KERNEL void Run(Block& block, Shared&) const {
-    if (!Moves(*flags)) return;
-    int index = block.index();
-    const Set& set = SetOfBlock(sets, &index);
-    ForElements(block, index, set.size, [&](int64_t i) {
-      const float target = set.target[i], online = set.online[i];
-      const float moved = i < set.trained ? target + tau * (online - target) : online;
-      set.target[i] = moved;
-      if (set.rounded != nullptr) set.rounded[i] = ToBf16(moved);
-    });
-  }
-};
-
-// Rounds arrays to bf16.
-struct RoundToBf16 {
-  static constexpr int kThreads = kElementThreads;
-  using Shared = NoShared;
-
-  struct Set {
-    int64_t size = 0;
-    const float* from = nullptr;
-    uint16_t* to = nullptr;
-    bool operator==(const Set&) const = default;
-  };
-  int set_count = 0;
-  Set sets[kMostSets] = {};
-
-  int blocks() const { return BlocksForSets(sets, set_count); }
-  bool operator==(const RoundToBf16&) const = default;
-
-  template <class Block>
-  SHOAL_KERNEL void Run(Block& block, Shared&) const {
-    int index = block.index();
-    const Set& set = SetOfBlock(sets, &index);
-    ForElements(block, index, set.size, [&](int64_t i) { set.to[i] = ToBf16(set.from[i]); });
-  }
-};
-
-// temperature = exp(log_temperature)
-struct Temperature {
-  static constexpr int kThreads = 32;
-  using Shared = NoShared;
-
-  const float* log_temperature = nullptr;
-  double* temperature = nullptr;
-
-  int blocks() const { return 1; }
-  bool operator==(const Temperature&) const = default;
-
-  template <class Block>
-  SHOAL_KERNEL void Run(Block& block, Shared&) const {
-    block.Threads([&](int thread) {
-      if (thread == 0) *temperature = std::exp(*log_temperature);
-    });
-  }
-};
-
-// Eq. 8: L = temperature (entropy - target_entropy), in f32.
-struct TemperatureLoss {
-  static constexpr int kThreads = 32;
-  using Shared = NoShared;
-
-  const double *temperature = nullptr, *entropy = nullptr;
-  float target_entropy = 0;
-  double* loss = nullptr;
-
-  int blocks() const { return 1; }
-  bool operator==(const TemperatureLoss&) const = default;
-
-  template <class Block>
-  SHOAL_KERNEL void Run(Block& block, Shared&) const {
-    block.Threads([&](int thread) {
-      if (thread == 0) *loss = float(*temperature) * (float(*entropy) - target_entropy);
-    });
-  }
-};
-
-// If the flag is set: one step of the log temperature, the first number of the set, with the
-// gradient `loss`. Afterwards it is at least `least`, a log temperature.
-struct StepTemperature {
-  static constexpr int kThreads = 32;
-  using Shared = NoShared;
-
-  AdamSet set = {};
-  AdamOptions options = {};  // without a limit of the norm
-  const double* loss = nullptr;
-  float least = 0;
-  AdamState* state = nullptr;
-  const Flags* flags = nullptr;
-
-  int blocks() const { return 1; }
-  bool operator==(const StepTemperature&) const = default;
-
-  template <class Block>
-  SHOAL_KERNEL void Run(Block& block, Shared&) const {
-    block.Threads([&](int thread) {
-      if (!Moves(*flags)) return;
-      // An undo restores the whole set.
-      ForAll<kThreads>(thread, set.size, [&](int64_t i) { KeepNumber(set, i); });
-      if (thread != 0) return;
-      StepNumber(set, 0, float(*loss), options.SizeOf(state->steps + 1, 0));
-      set.Set(0, Most(set.value[0], least));
-      ++state->steps;
-      state->taken = 1;
     });
   }
 };

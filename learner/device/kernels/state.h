@@ -23,7 +23,7 @@ SHOAL_KERNEL bool Moves(const Flags& flags) { return flags.finite != 0 && flags.
 // State of an optimiser.
 struct AdamState {
   int64_t steps;  // that took effect
-  int32_t taken;  // whether this update has taken a step
+  int64_t taken;  // 1 if this update has taken a step, else 0
 };
 
 }  // namespace shoal::learner::kernels

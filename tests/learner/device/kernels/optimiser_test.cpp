@@ -4,6 +4,9 @@
 
 #include "common/nn/adam.h"
 #include "common/nn/parameter_set.h"
+#include "learner/device/kernels/flags.h"
+#include "learner/device/kernels/parameter_sets.h"
+#include "learner/device/kernels/temperature.h"
 #include "tests/learner/device/kernels/kernel_fixture.h"
 
 namespace shoal::learner::kernels {
