@@ -5,7 +5,7 @@
 # (schema shoal-on-a-card-1) to the file JSON.
 #
 #   1. Each command of the GPU, and 200 updates of each algorithm and encoder, beside the host; rates
-#      of updates (shoal-gpu-trial, which only builds have).
+#      of updates (shoal-gpu-trial of the build; a bundle has none, and SHOAL_GPU_TRIAL names it).
 #   2. The flagship, fetch-reach-fast: wall clock, success, account.
 #   3. A killed learner; a run that is resumed on the CPU, then on the GPU.
 #
@@ -70,7 +70,7 @@ member() {
   python3 -c 'import json, sys; o = json.load(open(sys.argv[1])); print(eval(sys.argv[2]))' "$1" "$2"
 }
 
-# as_json EXPRESSION ON FILE with true and false as JSON writes them.
+# truth FILE EXPRESSION: the same as `true` or `false`.
 truth() {
   if [[ $(member "$1" "$2") == True ]]; then echo true; else echo false; fi
 }
@@ -88,12 +88,17 @@ readonly balanced='(lambda a: a["made"] > 0 and a["made"] == a["stored"] + a["lo
   + a["lost_with_replay"] + a["rejected"] + a["after_gap"] + a["discarded"])(o["accounting"])'
 
 try_commands_and_updates() {
-  if [[ ! -x $bin/shoal-gpu-trial ]]; then
-    echo "skipped: commands, updates and rates: no $bin/shoal-gpu-trial (build it: ninja -C BUILD shoal-gpu-trial)"
+  local status=0 program=${SHOAL_GPU_TRIAL:-$bin/shoal-gpu-trial} loader=() root=${bin%/bin}
+  if [[ ! -x $program ]]; then
+    row "commands, updates and rates (no program $program)" - - null false
     return
   fi
-  local status=0
-  timeout "$(seconds_for 200)" "$bin/shoal-gpu-trial" "${trial[@]}" >"$work/trial.json" || status=$?
+  if [[ -d $root/libexec ]]; then  # of a bundle, with its loader and libraries
+    loader=("$root/lib/ld-linux-x86-64.so.2" --inhibit-cache --library-path "$root/lib")
+  fi
+  # The program starts itself again unless OMP_WAIT_POLICY is set, and with a loader it cannot.
+  OMP_WAIT_POLICY=passive OMP_NUM_THREADS=1 timeout "$(seconds_for 200)" \
+    "${loader[@]}" "$program" "${trial[@]}" >"$work/trial.json" || status=$?
   if [[ ! -s $work/trial.json ]]; then
     row "commands, updates and rates (exit code $status)" - - null false
     return
