@@ -12,6 +12,7 @@
 #include "learner/device/kernels/losses.h"
 #include "learner/device/kernels/optimiser.h"
 #include "learner/device/kernels/parameter_sets.h"
+#include "learner/device/kernels/spatial_softmax.h"
 #include "learner/device/kernels/temperature.h"
 
 namespace shoal::learner::kernels {
@@ -23,9 +24,10 @@ using Kernel =
                  SampleSquashedGaussian, SquashedGaussianBackward, SquashedGaussianFigures,
                  AddClippedNoise, Targets, AverageCopies, CriticLoss, EntropyActorLoss,
                  DeterministicActorLoss, LabelLoss, Mean, BiasActivation, LayerNormForward,
-                 LayerNormBackward, LayerNormBackwardWeights, ActivationBackward, BeginUpdate,
-                 RequireFinite, HoldSteps, SumOfSquares, Adam, EndUpdate, MoveTowards, RoundToBf16,
-                 Temperature, TemperatureLoss, StepTemperature>;
+                 LayerNormBackward, LayerNormBackwardWeights, ActivationBackward,
+                 SpatialSoftmaxForward, SpatialSoftmaxBackward, BeginUpdate, RequireFinite,
+                 HoldSteps, SumOfSquares, Adam, EndUpdate, MoveTowards, RoundToBf16, Temperature,
+                 TemperatureLoss, StepTemperature>;
 static_assert(std::is_trivially_copyable_v<Kernel>, "a launch copies its arguments");
 
 // The arguments of a card's kernel are at most 4 KiB.

@@ -6,6 +6,15 @@
 namespace shoal::learner::device {
 namespace {
 
+// Distance from function 0 to function 1, after a check that all functions have this distance.
+int64_t StepOf(const std::vector<const float*>& addresses) {
+  const int64_t step = addresses.size() > 1 ? addresses[1] - addresses[0] : 0;
+  for (size_t i = 1; i < addresses.size(); ++i) CHECK(addresses[i] - addresses[i - 1] == step);
+  return step;
+}
+
+}  // namespace
+
 kernels::Activation ActivationOf(nn::Activation activation) {
   switch (activation) {
     case nn::Activation::kRelu:
@@ -17,15 +26,6 @@ kernels::Activation ActivationOf(nn::Activation activation) {
   }
   return kernels::Activation::kNone;
 }
-
-// Distance from function 0 to function 1, after a check that all functions have this distance.
-int64_t StepOf(const std::vector<const float*>& addresses) {
-  const int64_t step = addresses.size() > 1 ? addresses[1] - addresses[0] : 0;
-  for (size_t i = 1; i < addresses.size(); ++i) CHECK(addresses[i] - addresses[i - 1] == step);
-  return step;
-}
-
-}  // namespace
 
 DenseLayer::DenseLayer(Workspace* workspace, const DeviceParameters& parameters,
                        const std::vector<nn::LayerPlan>& plans, const LayerSource& source,

@@ -33,6 +33,9 @@ struct BackwardPart {
   bool source = true;
 };
 
+// The activation as kernels compute it.
+kernels::Activation ActivationOf(nn::Activation activation);
+
 class DenseLayer {
  public:
   // plans: one linear layer for each function, of the same shape. rounds: whether the output is

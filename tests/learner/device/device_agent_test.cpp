@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "common/base/error.h"
+#include "common/config/config_io.h"
 #include "tests/learner/device/device_fixture.h"
 
 namespace shoal::learner::device {
@@ -29,14 +30,27 @@ TEST(DeviceAgent, RefusesWhatADeviceDoesNotCompute) {
   config = SmallConfig();
   config.network.filters.clear();
   config.network.strides.clear();
-  config.network.encoder = "spatial_softmax";
+  config.network.encoder = "resnet18";
   ObservationSpec spec = SmallSpec();
   spec.height = spec.width = 64;
-  EXPECT_EQ(Refusal(config, spec),
-            "network.encoder = spatial_softmax: a device computes encoders of convolutions alone, "
-            "expected compact | drq | mrq | nature");
+  EXPECT_EQ(
+      Refusal(config, spec),
+      "network.encoder = resnet18: a device does not compute this encoder, expected compact | "
+      "drq | mrq | nature | spatial_softmax");
   WithoutPixels(&spec);
   EXPECT_EQ(Refusal(config, spec), "");
+}
+
+// A preset that only the CPU computes would leave the GPU unused with learner.device=auto.
+TEST(DeviceAgent, PresetsAreComputedUnlessTheirAlgorithmIsPpo) {
+  ObservationSpec spec = SmallSpec();
+  spec.height = spec.width = 84;
+  for (const std::string& name : ListPresets()) {
+    const Config config = LoadPreset(name);
+    if (config.learner.algorithm != "ppo") {
+      EXPECT_EQ(Refusal(config, spec), "") << name;
+    }
+  }
 }
 
 TEST(DeviceAgent, LearnsTheBandit) {
