@@ -4,6 +4,11 @@ set(SHOAL_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conv
 if(SHOAL_WARNINGS_AS_ERRORS)
   list(APPEND SHOAL_WARNINGS -Werror)
 endif()
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 13)
+  # It reports references to objects that live long, if a function that returns one has a temporary
+  # as its argument, for example FindTask("Hopper-v5").
+  list(APPEND SHOAL_WARNINGS -Wno-dangling-reference)
+endif()
 
 # For builds without a compiler cache: compiles sources of a target in groups, which takes 0.6 of the time.
 # Every source must still compile alone, as builds with a cache ensure.
