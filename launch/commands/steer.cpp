@@ -103,7 +103,7 @@ void AddSteerCommands(CLI::App& app, Action* chosen) {
                                        "Change the number of actors of a running run. Removed "
                                        "actors send their remaining records first.");
   AddNamedTargetOptions(*scale, &words->target);
-  scale->add_option("actors", words->words, "Number of actors; or the run's name");
+  scale->add_option("number", words->words, "Number of actors; or the run's name");
   scale->add_option("--actors", words->actors, "Number of actors")->check(CLI::Range(1, kMost));
   scale->callback([=] { *chosen = [=] { return Scale(*words); }; });
 
