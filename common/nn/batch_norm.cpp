@@ -73,7 +73,7 @@ void BatchNorm::BuildTraining(const LayerContext& context, const MapSource& sour
                   {DNNL_ARG_MEAN, mean_},
                   {DNNL_ARG_VARIANCE, variance_},
                   {DNNL_ARG_SCALE, weight_values_},
-                  {DNNL_ARG_SHIFT, bias_values_},
+                  {DNNL_ARG_SHIFT, ShiftOfNormalizationBackward(bias_values_)},
                   {DNNL_ARG_DIFF_DST, output_gradient_},
                   {DNNL_ARG_DIFF_SRC, source.gradient},
                   {DNNL_ARG_DIFF_SCALE, memory(channels, CpuEngine(), weight_.gradient())},

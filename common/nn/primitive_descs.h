@@ -114,6 +114,12 @@ inline dnnl::batch_normalization_backward::primitive_desc DescribeNormalizationB
 #endif
 }
 
+// The shift as an argument of this backward pass: oneDNN 2 needs it, oneDNN 3 refuses it. Op
+// ignores memory that is empty.
+inline dnnl::memory ShiftOfNormalizationBackward(const dnnl::memory& shift) {
+  return DNNL_VERSION_MAJOR >= 3 ? dnnl::memory() : shift;
+}
+
 // The attributes of a primitive that ends with a ReLU.
 inline dnnl::primitive_attr AttributesWithRelu() {
   constexpr auto kRelu = dnnl::algorithm::eltwise_relu;
