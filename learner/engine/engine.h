@@ -5,9 +5,10 @@
 //
 // An update begins with Begin and ends with End. Its operations and their order depend on the
 // configuration and on counters of the host, never on computed numbers, because nothing is read
-// before End. Besides batch and random draws, all values that change from update to update are in
-// the engine's memory; the host sets rates of schedules by Set. An engine may therefore record the
-// operations of an update once and replay the recording.
+// before End. An update without a step computes results that are read after End. Besides batch and
+// random draws, all values that change from update to update are in the engine's memory; the host
+// sets rates of schedules by Set. An engine may therefore record the operations of an update once
+// and replay the recording.
 //
 // A flag in the engine's memory says whether all numbers are finite. Begin sets the flag; a batch,
 // a loss or a gradient that is not finite clears it for the rest of the update. While the flag is

@@ -143,8 +143,12 @@ std::vector<float> PpoAgent::Values(std::span<const uint8_t> frames, std::span<c
   for (size_t at = 0; at < rows.size(); at += size_t(batch_size_)) {
     const auto some = std::span(rows).subspan(at, std::min(rows.size() - at, size_t(batch_size_)));
     minibatch_.TakeObservations(frames, vectors, some);
+    // An update of the engine without a step. Its outcome has no meaning: no loss is computed, and
+    // the rollout is known to be finite.
+    engine_->Begin(minibatch_.View());
     const Transitions batch = standard_.Seen(engine_->Take(minibatch_.View()));
     networks_.ForwardValue(batch.obs_frames, batch.obs_vector);
+    engine_->EndAndWait();
     const std::vector<float> read = engine_->ReadRows(networks_.value());
     for (size_t b = 0; b < some.size(); ++b) values[size_t(some[b])] = read[b];
   }

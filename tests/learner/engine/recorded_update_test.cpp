@@ -157,7 +157,8 @@ TEST_P(RecordedUpdateTest, EachOneIsTheOneAPeriodBefore) {
 INSTANTIATE_TEST_SUITE_P(Of, RecordedUpdateTest, testing::ValuesIn(kVariants),
                          [](const auto& test) { return test.param.name; });
 
-// On policy an update of a rollout is a sequence of updates of the engine: one for each minibatch.
+// On policy an update of a rollout is a sequence of updates of the engine: some that compute values
+// without a step, then one for each minibatch.
 class RecordedMinibatchTest : public testing::TestWithParam<const char*> {
  protected:
   RecordedMinibatchTest() {
@@ -172,25 +173,28 @@ class RecordedMinibatchTest : public testing::TestWithParam<const char*> {
   }
 
   // The operations from each Begin to its End.
+  using Operations = std::vector<std::string>;
   struct Recording {
-    std::vector<std::vector<std::string>> minibatches;
+    std::vector<Operations> values, minibatches;
     bool finite = false;
     double steps = 0;
   };
   Recording Record(Agent* agent, const BatchView& rollout) {
     recording_.TakeOperations();
     const UpdateOutcome outcome = agent->Update(rollout);
-    Recording result{.minibatches = {},
+    Recording result{.values = {},
+                     .minibatches = {},
                      .finite = outcome.finite,
                      .steps = outcome.figures.Get(*FindFigure("minibatches")).value_or(-1)};
-    bool within = false;
+    Operations update;
     for (const std::string& operation : recording_.TakeOperations()) {
-      if (operation.starts_with("Begin")) {
-        within = true;
-        result.minibatches.emplace_back();
-      }
-      if (within) result.minibatches.back().push_back(operation);
-      within = within && operation != "End";
+      if (update.empty() && !operation.starts_with("Begin")) continue;
+      update.push_back(operation);
+      if (operation != "End") continue;
+      const bool steps = std::ranges::any_of(
+          update, [](const std::string& each) { return each.starts_with("Step"); });
+      (steps ? result.minibatches : result.values).push_back(std::move(update));
+      update.clear();
     }
     return result;
   }
@@ -204,7 +208,7 @@ class RecordedMinibatchTest : public testing::TestWithParam<const char*> {
 TEST_P(RecordedMinibatchTest, ItsOperationsDoNotDependOnNumbers) {
   const auto agent = FindAlgorithm("ppo").make(config_, SmallSpec(), &recording_);
   const BatchOptions options{.batch = 12, .rollout = true};
-  std::vector<std::vector<std::string>> all;
+  std::vector<Operations> all, values;
   bool held = false, stepped = false;
   const auto record = [&](uint64_t key, float log_prob) {
     const RandomBatch rollout(SmallSpec(), options, key);
@@ -216,6 +220,7 @@ TEST_P(RecordedMinibatchTest, ItsOperationsDoNotDependOnNumbers) {
     }
     Recording recording = Record(agent.get(), rollout.View());
     std::ranges::copy(recording.minibatches, std::back_inserter(all));
+    std::ranges::copy(recording.values, std::back_inserter(values));
     held = held || recording.steps < double(recording.minibatches.size());
     stepped = stepped || recording.steps > 0;
     return recording.finite;
@@ -227,6 +232,8 @@ TEST_P(RecordedMinibatchTest, ItsOperationsDoNotDependOnNumbers) {
   ASSERT_GE(all.size(), 6u);
   ASSERT_GT(all[0].size(), 8u);
   EXPECT_THAT(all, testing::Each(all[0]));
+  ASSERT_GE(values.size(), 12u);  // two passes, and one for next observations at ends of episodes
+  EXPECT_THAT(values, testing::Each(values[0]));
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, RecordedMinibatchTest, testing::Values("separate", "shared"));
