@@ -33,8 +33,7 @@ constexpr Algorithm kAlgorithms[] = {
      .figures = kPpoFigures,
      .sb3 = "PPO",
      .make = MakePpoAgent,
-     .divides_rows = false,
-     .on_devices = false},
+     .divides_rows = false},
 };
 
 std::vector<const Figure*> CollectFigures() {

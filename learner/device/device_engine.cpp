@@ -139,10 +139,14 @@ void DeviceEngine::SetMoments(Moments moments, std::span<const double> values) {
 
 // ---- An update ----
 
-void DeviceEngine::Begin(const BatchView& drawn) {
-  CHECK(!updating_ && int(drawn.rows()) == rows()) << "batch of " << drawn.rows();
+void DeviceEngine::BeginInputs() {
   turn_ = (turn_ + 1) % landings_.size();
   landing().Begin();
+}
+
+void DeviceEngine::Begin(const BatchView& drawn) {
+  CHECK(!updating_ && int(drawn.rows()) == rows()) << "batch of " << drawn.rows();
+  BeginInputs();
   const int32_t finite[] = {AllFinite(drawn) ? 1 : 0};
   batch_finite_ = landing().Add(std::span<const int32_t>(finite));
   workspace_.BeginList(kernels::BeginUpdate{});
@@ -331,12 +335,15 @@ void DeviceEngine::MoveAverage(float rate, const nn::ParameterSet& online,
 
 // ---- Mirrors ----
 
-// `layout`: of a set without a mirror; null: the host's order.
+// `layout`: of a set without a mirror; null: the host's order. The mirror has gradients if the set
+// has.
 DeviceParameters& DeviceEngine::Use(const nn::ParameterSet& set, bool changes,
                                     const ParameterLayout* layout) {
   if (set.mirror() == nullptr) {
     DeviceParameters::Attach(&workspace_, layout != nullptr ? *layout : ParameterLayout(set),
-                             nn::ParameterSet::Use::kInference, set);
+                             set.gradients() != nullptr ? nn::ParameterSet::Use::kTraining
+                                                        : nn::ParameterSet::Use::kInference,
+                             set);
   }
   set.UseMirror(changes);
   return DeviceParameters::Of(set);

@@ -80,11 +80,11 @@ class DeviceEngine final : public Engine {
                               Array q_gradient, Number loss, Number saturation) override;
   void LabelLoss(Array y, Array labels, float weight, float unit, Array gradient,
                  Number mean_square) override;
-  // Not computed: CHECKs (device_agent.h refuses the configuration).
   void ClippedPolicyLoss(const ClippedPolicyTerms& terms, nn::ParameterSet* log_std,
                          Array mean_gradient, Array value_gradient,
                          const ClippedPolicyNumbers& figures) override;
   void GaussianFigures(const nn::ParameterSet& log_std, Number deviation, Number entropy) override;
+  // Not computed: CHECKs. An algorithm with such operations has Algorithm::on_devices = false.
   void OnHost(std::span<const Array> inputs, std::span<const Array> outputs,
               const HostOperation& operation) override;
   void Mean(Array values, Number mean) override;
@@ -120,11 +120,22 @@ class DeviceEngine final : public Engine {
   int ColumnsOf(Array array) const { return int(array.size() / rows()); }
   size_t IndexOf(Number number) const;
   Landing& landing() { return *landings_[turn_]; }
+  // Begins inputs in the landing that was not used last.
+  void BeginInputs();
   void SetHostNumbers();
   kernels::BeginUpdate FirstCommand() const;
   void AddEndUpdate();
   void Submit();
   Outcome TakeOutcome();
+
+  // Memory between the kernels of a clipped loss (kernels/clipped_policy.h).
+  struct ClippedPolicyMemory {
+    double* inverse_sigma = nullptr;  // (A)
+    kernels::ClippedPolicyConstants* constants = nullptr;
+    double* log_prob_gradient = nullptr;  // (B)
+    kernels::ClippedPolicyRows::Terms* partials = nullptr;
+  };
+  const ClippedPolicyMemory& MemoryOfClippedPolicy(int actions);
 
   // Mirrors that this engine attaches where there is none yet.
   DeviceParameters& Use(const nn::ParameterSet& set, bool changes, const ParameterLayout* layout);
@@ -154,6 +165,7 @@ class DeviceEngine final : public Engine {
   std::deque<size_t> flying_;  // slots of the updates in flight, oldest first
   Results read_;               // of the outcome that was returned last
   int32_t* const counter_;     // of kernels, one after another
+  std::map<int, ClippedPolicyMemory> clipped_policies_;  // by the number of actions
 };
 
 }  // namespace shoal::learner::device

@@ -37,6 +37,15 @@ kernels::CriticFigures FiguresOf(const CriticNumbers& numbers) {
           .q_min_max = AddressOf(numbers.q_min_max)};
 }
 
+kernels::ClippedPolicyFigures FiguresOf(const ClippedPolicyNumbers& numbers) {
+  return {.policy = AddressOf(numbers.policy),
+          .value = AddressOf(numbers.value),
+          .total = AddressOf(numbers.total),
+          .rounded_total = AddressOf(numbers.rounded_total),
+          .approx_kl = AddressOf(numbers.approx_kl),
+          .clip_fraction = AddressOf(numbers.clip_fraction)};
+}
+
 }  // namespace
 
 // ---- Inputs ----
@@ -104,13 +113,16 @@ void DeviceEngine::Standardise(Array x, Moments moments, float variance_floor, A
 
 void DeviceEngine::AddToMoments(std::span<const float> vectors, Moments moments) {
   const auto width = size_t(moments.size()) / 2;
-  CHECK(updating_);
-  workspace_.Add(kernels::AddToMoments{.rows = int(vectors.size() / width),
-                                       .width = int(width),
-                                       .vectors = landing().Add(vectors),
-                                       .moments = AddressOf(moments),
-                                       .flags = &results_->flags,
-                                       .finished = counter_});
+  if (!updating_) BeginInputs();
+  const kernels::AddToMoments add{.rows = int(vectors.size() / width),
+                                  .width = int(width),
+                                  .vectors = landing().Add(vectors),
+                                  .moments = AddressOf(moments),
+                                  .flags = updating_ ? &results_->flags : nullptr,
+                                  .finished = counter_};
+  if (!updating_) landing().Send();
+  workspace_.Add(add);
+  if (!updating_) landing().MarkUsed();
 }
 
 // ---- Actions ----
@@ -242,13 +254,69 @@ void DeviceEngine::LabelLoss(Array y, Array labels, float weight, float unit, Ar
                                     .mean_square = AddressOf(mean_square)});
 }
 
-void DeviceEngine::ClippedPolicyLoss(const ClippedPolicyTerms&, nn::ParameterSet*, Array, Array,
-                                     const ClippedPolicyNumbers&) {
-  CHECK(false) << "a device does not compute the clipped loss";
+void DeviceEngine::ClippedPolicyLoss(const ClippedPolicyTerms& terms, nn::ParameterSet* log_std,
+                                     Array mean_gradient, Array value_gradient,
+                                     const ClippedPolicyNumbers& figures) {
+  const DeviceParameters& deviations = Use(*log_std, /*changes=*/false, nullptr);
+  const int actions = ColumnsOf(terms.mean);
+  const ClippedPolicyMemory& memory = MemoryOfClippedPolicy(actions);
+  workspace_.Add(kernels::PrepareClippedPolicy{.rows = rows(),
+                                               .actions = actions,
+                                               .normalise = terms.normalise_advantages,
+                                               .advantage = AddressOf(terms.advantage),
+                                               .log_std = deviations.values(),
+                                               .inverse_sigma = memory.inverse_sigma,
+                                               .constants = memory.constants});
+  workspace_.Add(kernels::ClippedPolicyRows{.rows = rows(),
+                                            .actions = actions,
+                                            .mean = AddressOf(terms.mean),
+                                            .drawn_action = AddressOf(terms.drawn_action),
+                                            .inverse_sigma = memory.inverse_sigma,
+                                            .old_log_prob = AddressOf(terms.old_log_prob),
+                                            .advantage = AddressOf(terms.advantage),
+                                            .value = AddressOf(terms.value),
+                                            .old_value = AddressOf(terms.old_value),
+                                            .target = AddressOf(terms.target),
+                                            .constants = memory.constants,
+                                            .clip = AddressOf(terms.clip),
+                                            .value_clip = terms.value_clip,
+                                            .value_weight = terms.value_weight,
+                                            .entropy_weight = terms.entropy_weight,
+                                            .mean_gradient = AddressOf(mean_gradient),
+                                            .value_gradient = AddressOf(value_gradient),
+                                            .log_prob_gradient = memory.log_prob_gradient,
+                                            .partials = memory.partials,
+                                            .finished = counter_,
+                                            .figures = FiguresOf(figures)});
+  workspace_.Add(kernels::LogStdGradient{.rows = rows(),
+                                         .actions = actions,
+                                         .mean = AddressOf(terms.mean),
+                                         .drawn_action = AddressOf(terms.drawn_action),
+                                         .inverse_sigma = memory.inverse_sigma,
+                                         .log_prob_gradient = memory.log_prob_gradient,
+                                         .entropy_weight = terms.entropy_weight,
+                                         .gradient = deviations.gradients()});
 }
 
-void DeviceEngine::GaussianFigures(const nn::ParameterSet&, Number, Number) {
-  CHECK(false) << "a device does not compute a Gaussian without tanh";
+const DeviceEngine::ClippedPolicyMemory& DeviceEngine::MemoryOfClippedPolicy(int actions) {
+  const auto [memory, is_new] = clipped_policies_.try_emplace(actions);
+  if (is_new) {
+    const int blocks = kernels::ClippedPolicyRows::BlocksFor(rows());
+    memory->second = {.inverse_sigma = workspace_.New<double>(actions),
+                      .constants = workspace_.New<kernels::ClippedPolicyConstants>(1),
+                      .log_prob_gradient = workspace_.New<double>(rows()),
+                      .partials = workspace_.New<kernels::ClippedPolicyRows::Terms>(blocks)};
+  }
+  return memory->second;
+}
+
+void DeviceEngine::GaussianFigures(const nn::ParameterSet& log_std, Number deviation,
+                                   Number entropy) {
+  workspace_.Add(
+      kernels::GaussianFigures{.actions = int(log_std.specs()[0].shape[0]),
+                               .log_std = Use(log_std, /*changes=*/false, nullptr).values(),
+                               .deviation = AddressOf(deviation),
+                               .entropy = AddressOf(entropy)});
 }
 
 void DeviceEngine::OnHost(std::span<const Array>, std::span<const Array>, const HostOperation&) {

@@ -112,6 +112,30 @@ TEST(Gpu, ARunOnAGpuNamesItInItsFilesAndReports) {
                              HasSubstr("\"card_memory_size_mb\":")));
 }
 
+TEST(Gpu, PpoLearnsOnAGpuAndGoesOnOnTheCpu) {
+  const TrainingRun run;
+  std::vector<std::string> command = run.OnPolicyCommand({{"learner.device", "cuda"},
+                                                          {"learner.batch", "64"},
+                                                          {"network.hidden", "[16]"},
+                                                          {"env_steps", "4096"},
+                                                          {"actors", "1"},
+                                                          {"eval.interval", "100000"}});
+  command[0] = ProgramPath(command[0]);
+  const ProgramResult result = RunCommand(command, kGpuDeadline, FakeGpu("works"));
+  ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
+  EXPECT_EQ(run.Json("meta.json").at("learner_device").at("device"), "cuda");
+  ExpectBalanced(run.Json("meta.json"));
+  EXPECT_THAT(ReadFile(run.path() / "metrics.jsonl"), HasSubstr("\"approx_kl\":"));
+  const ProgramResult resumed =
+      RunCommand({ProgramPath("shoal"), "train", "--resume", run.path().string(), "--set",
+                  "learner.device=cpu", "--set", "env_steps=6000"},
+                 kGpuDeadline);
+  ASSERT_EQ(ExitCode(resumed), 0) << resumed.out << resumed.err;
+  const nlohmann::json meta = run.Json("meta.json");
+  EXPECT_EQ(meta.at("learner_device").at("device"), "cpu");
+  ExpectBalanced(meta);
+}
+
 TEST(Gpu, AutoSaysWhyItTookTheCpu) {
   const TrainingRun run;
   const ProgramResult result = Train(run, "auto", FakeGpu("refuses"));

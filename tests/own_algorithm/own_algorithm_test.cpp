@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 
 #include "averaged_ddpg.h"
+#include "common/base/error.h"
 #include "common/config/config_io.h"
 #include "common/config/exploration_kind.h"
 #include "common/config/run_files.h"
 #include "common/nn/policy.h"
 #include "common/nn/precision.h"
+#include "learner/device/device_agent.h"
 #include "strided_encoder.h"
 #include "tests/learner/agent/agent_fixture.h"
 #include "tests/learner/agent/bar_pictures.h"
@@ -60,6 +62,18 @@ TEST(OwnAlgorithm, ARunThatNamesItMakesIt) {
   const auto tensors = MakeAgent(read.config, read.spec, Precision::kF32)->AllTensors();
   EXPECT_TRUE(tensors.contains("critic.q3.output.weight"));
   EXPECT_EQ(tensors.at("encoder.conv2.weight").shape, (std::vector<int64_t>{32, 32, 5, 5}));
+}
+
+// It has operations on the host.
+TEST(OwnAlgorithm, ADeviceRefusesIt) {
+  try {
+    device::CheckComputes(OwnConfig(), SmallSpec());
+    ADD_FAILURE() << "not refused";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(),
+                 "learner.algorithm = averaged_ddpg: a device does not compute this algorithm, "
+                 "expected sac | td3 | ddpg | ppo");
+  }
 }
 
 TEST(OwnAlgorithm, GoesOnByteForByteFromWhatItLeft) {

@@ -160,7 +160,7 @@ struct SampleSquashedGaussian {
  private:
   // Computes one action and returns its term of the log-probability.
   SHOAL_KERNEL double Sample(int64_t at) const {
-    constexpr double kLogTwo = 0.69314718055994531, kHalfLogTwoPi = 0.91893853320467274;
+    constexpr double kLogTwo = 0.69314718055994531;
     const double eps = noise[at];
     const double scaled = std::exp(double(log_std[at])) * eps;
     const double u = mean[at] + scaled;

@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <variant>
 
+#include "learner/device/kernels/clipped_policy.h"
 #include "learner/device/kernels/flags.h"
 #include "learner/device/kernels/gaussian.h"
 #include "learner/device/kernels/inputs.h"
@@ -18,16 +19,15 @@
 namespace shoal::learner::kernels {
 
 // A launch of one kernel: its arguments. The members' meanings are in the kernels' headers.
-using Kernel =
-    std::variant<PoolFrames, CopyColumns, SumColumns, GatherLabels, Standardise, AddToMoments,
-                 GaussianHead, GaussianHeadBackward, TanhHead, TanhHeadBackward,
-                 SampleSquashedGaussian, SquashedGaussianBackward, SquashedGaussianFigures,
-                 AddClippedNoise, Targets, AverageCopies, CriticLoss, EntropyActorLoss,
-                 DeterministicActorLoss, LabelLoss, Mean, BiasActivation, LayerNormForward,
-                 LayerNormBackward, LayerNormBackwardWeights, ActivationBackward,
-                 SpatialSoftmaxForward, SpatialSoftmaxBackward, BeginUpdate, RequireFinite,
-                 HoldSteps, SumOfSquares, Adam, EndUpdate, MoveTowards, RoundToBf16, Temperature,
-                 TemperatureLoss, StepTemperature>;
+using Kernel = std::variant<
+    PoolFrames, CopyColumns, SumColumns, GatherLabels, Standardise, AddToMoments, GaussianHead,
+    GaussianHeadBackward, TanhHead, TanhHeadBackward, SampleSquashedGaussian,
+    SquashedGaussianBackward, SquashedGaussianFigures, AddClippedNoise, Targets, AverageCopies,
+    CriticLoss, EntropyActorLoss, DeterministicActorLoss, LabelLoss, PrepareClippedPolicy,
+    ClippedPolicyRows, LogStdGradient, GaussianFigures, Mean, BiasActivation, LayerNormForward,
+    LayerNormBackward, LayerNormBackwardWeights, ActivationBackward, SpatialSoftmaxForward,
+    SpatialSoftmaxBackward, BeginUpdate, RequireFinite, HoldSteps, SumOfSquares, Adam, EndUpdate,
+    MoveTowards, RoundToBf16, Temperature, TemperatureLoss, StepTemperature>;
 static_assert(std::is_trivially_copyable_v<Kernel>, "a launch copies its arguments");
 
 // The arguments of a card's kernel are at most 4 KiB.

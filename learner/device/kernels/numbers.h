@@ -11,6 +11,8 @@
 
 namespace shoal::learner::kernels {
 
+constexpr double kHalfLogTwoPi = 0.91893853320467274;  // log(2 pi) / 2
+
 template <class T>
 SHOAL_EVERYWHERE T Least(T a, T b) {
   return b < a ? b : a;

@@ -23,11 +23,6 @@ std::string Refusal(const Config& config, const ObservationSpec& spec) {
 TEST(DeviceAgent, RefusesWhatADeviceDoesNotCompute) {
   Config config = SmallConfig();
   EXPECT_EQ(Refusal(config, SmallSpec()), "");
-  config.learner.algorithm = "ppo";
-  EXPECT_EQ(Refusal(config, SmallSpec()),
-            "learner.algorithm = ppo: a device does not compute this algorithm, expected sac | td3 "
-            "| ddpg");
-  config = SmallConfig();
   config.network.filters.clear();
   config.network.strides.clear();
   config.network.encoder = "resnet18";
@@ -42,14 +37,11 @@ TEST(DeviceAgent, RefusesWhatADeviceDoesNotCompute) {
 }
 
 // A preset that only the CPU computes would leave the GPU unused with learner.device=auto.
-TEST(DeviceAgent, PresetsAreComputedUnlessTheirAlgorithmIsPpo) {
+TEST(DeviceAgent, EveryPresetIsComputed) {
   ObservationSpec spec = SmallSpec();
   spec.height = spec.width = 84;
   for (const std::string& name : ListPresets()) {
-    const Config config = LoadPreset(name);
-    if (config.learner.algorithm != "ppo") {
-      EXPECT_EQ(Refusal(config, spec), "") << name;
-    }
+    EXPECT_EQ(Refusal(LoadPreset(name), spec), "") << name;
   }
 }
 

@@ -45,16 +45,6 @@ class DeviceEngineTest : public testing::TestWithParam<AgentCase> {
                GetParam().without_effect);
     EXPECT_LE(device.engine.recorded(), 8);
   }
-  static void ExpectFigures(const UpdateOutcome& outcome, const UpdateOutcome& expected,
-                            double tolerance) {
-    const auto &some = outcome.figures.entries(), &other = expected.figures.entries();
-    ASSERT_EQ(some.size(), other.size());
-    for (size_t i = 0; i < some.size(); ++i) {
-      ASSERT_EQ(some[i].figure, other[i].figure);
-      EXPECT_NEAR(some[i].value, other[i].value, tolerance * (1 + std::abs(other[i].value)))
-          << some[i].figure->name;
-    }
-  }
 
   Config config_ = SmallConfig();
   ObservationSpec spec_ = SmallSpec();

@@ -101,4 +101,16 @@ inline void ExpectNear(const nn::TensorMap& some, const nn::TensorMap& other, do
   }
 }
 
+// Expects the same figures in the same order.
+inline void ExpectFigures(const UpdateOutcome& outcome, const UpdateOutcome& expected,
+                          double tolerance) {
+  const auto &some = outcome.figures.entries(), &other = expected.figures.entries();
+  ASSERT_EQ(some.size(), other.size());
+  for (size_t i = 0; i < some.size(); ++i) {
+    ASSERT_EQ(some[i].figure, other[i].figure);
+    EXPECT_NEAR(some[i].value, other[i].value, tolerance * (1 + std::abs(other[i].value)))
+        << some[i].figure->name;
+  }
+}
+
 }  // namespace shoal::learner::device
