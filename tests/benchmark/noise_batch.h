@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A batch of noise for agents of the default task.
+// A batch of noise for agents of the default task, or a rollout of one environment.
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <type_traits>
 
 #include "common/base/aligned_bytes.h"
@@ -26,7 +28,8 @@ inline ObservationSpec PixelSpec(int channels = 6) {
 // Not movable, because `batch` borrows the schema.
 struct NoiseBatch {
   NoiseBatch(const Config& config, const ObservationSpec& spec)
-      : schema(spec, {.batch = config.learner.batch}) {
+      : NoiseBatch(spec, {.batch = config.learner.batch}) {}
+  NoiseBatch(const ObservationSpec& spec, const BatchOptions& options) : schema(spec, options) {
     Random random(1);
     const auto fill = [&](auto& array, double low, double high) {
       for (auto& x : array) {
@@ -41,9 +44,25 @@ struct NoiseBatch {
     fill(batch.reward, -0.3, 0);
     fill(batch.bootstrap, 1, 1);
     fill(batch.weights_update, 0, 1);
+    fill(batch.drawn_action, -1, 1);
+    fill(batch.ends, 0, 0);
+    fill(batch.continues, 1, 1);
+    if (!batch.continues.empty()) batch.continues.back() = 0;
+    SetLogProbs();
   }
   NoiseBatch(const NoiseBatch&) = delete;
   NoiseBatch& operator=(const NoiseBatch&) = delete;
+
+  // Log-probabilities of an untrained policy, whose means are about 0 and deviations 1.
+  void SetLogProbs() const {
+    for (size_t b = 0; b < batch.log_prob.size(); ++b) {
+      const size_t actions = batch.drawn_action.size() / batch.log_prob.size();
+      batch.log_prob[b] = 0;
+      for (const float u : batch.drawn_action.subspan(b * actions, actions)) {
+        batch.log_prob[b] -= u * u / 2 + 0.9189385f;
+      }
+    }
+  }
 
   BatchSchema schema;
   AlignedBytes memory{schema.total_bytes()};

@@ -4,7 +4,7 @@
 # build (build/release) or an unpacked bundle: it has bin/shoal. Prints a table, and writes JSON
 # (schema shoal-on-a-card-1) to the file JSON.
 #
-#   1. Each command of the GPU, and 200 updates of each algorithm and encoder, beside the host; rates
+#   1. Each command of the GPU, and updates of each algorithm and encoder, beside the host; rates
 #      of updates (shoal-gpu-trial of the build; a bundle has none, and SHOAL_GPU_TRIAL names it).
 #   2. The flagship, fetch-reach-fast: wall clock, success, account.
 #   3. A killed learner; a run that is resumed on the CPU, then on the GPU.

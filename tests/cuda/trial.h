@@ -25,9 +25,9 @@ using Show = std::function<void(const Row&)>;
 // largest number of the host's result. `quick`: small shapes only.
 void TryCommands(learner::device::Device* device, bool quick, const Show& show);
 
-// Makes 200 updates of each algorithm and encoder on the device and on the CPU with equal batches
-// and draws, and shows the relative difference of the parameters. `quick`: few updates, small
-// networks.
+// Makes 200 updates of each algorithm and encoder (of PPO: 40 minibatches from vectors, 4 from
+// pixels) on the device and on the CPU with equal batches and draws, and shows the relative
+// difference of the parameters. `quick`: few updates, small networks.
 void TryUpdates(learner::device::Device* device, bool quick, const Show& show);
 
 // Rates of SAC's update on the device, with batches in host memory. `seconds` for each row.
