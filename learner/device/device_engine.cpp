@@ -360,14 +360,16 @@ DeviceAdam& DeviceEngine::Use(nn::Adam* optimiser) {
 kernels::AdamSet DeviceEngine::AdamSetOf(const nn::Adam& optimiser, size_t i) const {
   const DeviceParameters& parameters = DeviceParameters::Of(*optimiser.sets()[i]);
   const DeviceAdam::Arrays& arrays = DeviceAdam::Of(optimiser).arrays()[i];
-  return {.size = parameters.layout().trained_size(),
+  return {.size = parameters.layout().size(),
+          .trained = parameters.layout().trained_size(),
           .value = parameters.values(),
           .m = arrays.m,
           .v = arrays.v,
           .former_value = arrays.former_value,
           .former_m = arrays.former_m,
           .former_v = arrays.former_v,
-          .rounded = parameters.rounded()};
+          .rounded = parameters.rounded(),
+          .next_statistics = parameters.next_statistics()};
 }
 
 kernels::AdamOptions DeviceEngine::OptionsOf(const nn::Adam& optimiser) const {

@@ -36,7 +36,9 @@ DeviceParameters::DeviceParameters(Workspace* workspace, const ParameterLayout& 
       values_(workspace->New<float>(layout.size())),
       rounded_(workspace->compute_type() == Type::kBf16 ? workspace->New<uint16_t>(layout.size())
                                                         : nullptr),
-      gradients_(trained ? workspace->New<float>(layout.trained_size()) : nullptr) {}
+      gradients_(trained ? workspace->New<float>(layout.trained_size()) : nullptr),
+      next_statistics_(trained ? workspace->New<float>(layout.size() - layout.trained_size())
+                               : nullptr) {}
 
 DeviceParameters& DeviceParameters::Of(const nn::ParameterSet& set) {
   auto* mirror = dynamic_cast<DeviceParameters*>(set.mirror());
@@ -69,9 +71,12 @@ void DeviceParameters::Send(const float* values) {
 }
 
 Tensor DeviceParameters::Find(const std::string& name) const {
-  const int64_t offset = layout_.OffsetOf(name);
-  return {values_ + offset, rounded_ == nullptr ? nullptr : rounded_ + offset,
-          gradients_ == nullptr ? nullptr : gradients_ + offset};
+  const int64_t offset = layout_.OffsetOf(name), statistic = offset - layout_.trained_size();
+  const auto at = [](auto* array, int64_t of) { return array == nullptr ? nullptr : array + of; };
+  return {.value = values_ + offset,
+          .rounded = at(rounded_, offset),
+          .gradient = statistic < 0 ? at(gradients_, offset) : nullptr,
+          .next_value = statistic < 0 ? nullptr : at(next_statistics_, statistic)};
 }
 
 DeviceAdam::DeviceAdam(Workspace* workspace, const nn::Adam& optimiser)
@@ -80,10 +85,14 @@ DeviceAdam::DeviceAdam(Workspace* workspace, const nn::Adam& optimiser)
       state_(workspace->New<kernels::AdamState>(1)) {
   for (const nn::ParameterSet* set : optimiser.sets()) {
     const DeviceParameters& parameters = DeviceParameters::Of(*set);
-    const int64_t size = parameters.layout().trained_size();
+    const int64_t trained = parameters.layout().trained_size();
     sets_.push_back(&parameters);
-    const auto zeros = [&] { return workspace->New<float>(size); };
-    arrays_.push_back({zeros(), zeros(), zeros(), zeros(), zeros()});
+    const auto zeros = [&](int64_t size) { return workspace->New<float>(size); };
+    arrays_.push_back({.m = zeros(trained),
+                       .v = zeros(trained),
+                       .former_value = zeros(parameters.layout().size()),
+                       .former_m = zeros(trained),
+                       .former_v = zeros(trained)});
   }
 }
 

@@ -17,11 +17,13 @@
 namespace shoal::learner::device {
 
 // Addresses of one parameter. rounded: the values in bf16, null if the workspace computes in f32.
-// gradient: null if the set is not trained.
+// gradient: null for a running statistic, and if the set is not trained. next_value: of a statistic
+// of a trained set; a forward pass writes it, and the optimiser's next step applies it.
 struct Tensor {
   float* value;
   uint16_t* rounded;
   float* gradient;
+  float* next_value;
 
   // The values in a type.
   const void* As(Type type) const { return device::As(type, value, rounded); }
@@ -47,6 +49,9 @@ class DeviceParameters final : public nn::ParameterMirror {
   float* values() const { return values_; }
   uint16_t* rounded() const { return rounded_; }
   float* gradients() const { return gradients_; }  // of the trained size
+  // Statistics that the next step applies: the numbers beyond the trained size. Null if the set has
+  // none, or is not trained.
+  float* next_statistics() const { return next_statistics_; }
 
  private:
   Workspace* const workspace_;
@@ -54,11 +59,13 @@ class DeviceParameters final : public nn::ParameterMirror {
   float* const values_;
   uint16_t* const rounded_;
   float* const gradients_;
+  float* const next_statistics_;
 };
 
 class DeviceAdam final : public nn::AdamMirror {
  public:
-  // Arrays of one set, of the trained size. former_*: before the last step.
+  // Arrays of one set: moments, and former values and moments, from before the last step. Moments
+  // have the trained size, values the whole one.
   struct Arrays {
     float *m, *v, *former_value, *former_m, *former_v;
   };

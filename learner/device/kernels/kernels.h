@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <variant>
 
+#include "learner/device/kernels/batch_norm.h"
 #include "learner/device/kernels/clipped_policy.h"
 #include "learner/device/kernels/flags.h"
 #include "learner/device/kernels/gaussian.h"
@@ -13,6 +14,7 @@
 #include "learner/device/kernels/losses.h"
 #include "learner/device/kernels/optimiser.h"
 #include "learner/device/kernels/parameter_sets.h"
+#include "learner/device/kernels/pooling.h"
 #include "learner/device/kernels/spatial_softmax.h"
 #include "learner/device/kernels/temperature.h"
 
@@ -26,7 +28,9 @@ using Kernel = std::variant<
     CriticLoss, EntropyActorLoss, DeterministicActorLoss, LabelLoss, PrepareClippedPolicy,
     ClippedPolicyRows, LogStdGradient, GaussianFigures, Mean, BiasActivation, LayerNormForward,
     LayerNormBackward, LayerNormBackwardWeights, ActivationBackward, SpatialSoftmaxForward,
-    SpatialSoftmaxBackward, BeginUpdate, RequireFinite, HoldSteps, SumOfSquares, Adam, EndUpdate,
+    SpatialSoftmaxBackward, MaxPoolForward, MaxPoolBackward, AveragePoolForward,
+    AveragePoolBackward, ChannelMeans, ChannelVariances, BatchNormForward, BatchNormWeights,
+    BatchNormBackward, AddMap, BeginUpdate, RequireFinite, HoldSteps, SumOfSquares, Adam, EndUpdate,
     MoveTowards, RoundToBf16, Temperature, TemperatureLoss, StepTemperature>;
 static_assert(std::is_trivially_copyable_v<Kernel>, "a launch copies its arguments");
 

@@ -68,12 +68,15 @@ struct SumOfSquares {
   }
 };
 
-// A parameter set, its moments, and their values before the last step; `size` floats each.
+// A parameter set, its moments, and their values before the last step. Moments have `trained`
+// floats, values `size`: running statistics follow the trained parameters. A step gives statistics
+// the values that the latest forward pass has measured.
 struct AdamSet {
-  int64_t size = 0;
+  int64_t size = 0, trained = 0;
   float *value = nullptr, *m = nullptr, *v = nullptr;
   float *former_value = nullptr, *former_m = nullptr, *former_v = nullptr;
-  uint16_t* rounded = nullptr;  // the values in bf16; null: none
+  uint16_t* rounded = nullptr;             // the values in bf16; null: none
+  const float* next_statistics = nullptr;  // (size - trained)
 
   bool operator==(const AdamSet&) const = default;
   SHOAL_KERNEL void Set(int64_t i, float to) const {
@@ -126,6 +129,12 @@ SHOAL_KERNEL void StepNumber(const AdamSet& set, int64_t i, float gradient, cons
   set.Set(i, w - size.rate * next_m / (std::sqrt(next_v) * size.root_scale + size.epsilon));
 }
 
+// The step of number i, a statistic.
+SHOAL_KERNEL void StepStatistic(const AdamSet& set, int64_t i) {
+  set.former_value[i] = set.value[i];
+  set.Set(i, set.next_statistics[i - set.trained]);
+}
+
 // Clears the flag if the squares would overflow in Adam's second moment, unless the steps are held.
 // If the flag is set: makes one step of all sets.
 struct Adam {
@@ -159,8 +168,10 @@ struct Adam {
       int index = block.index();
       const AdamSet& set = SetOfBlock(sets, &index);
       const float* gradient = gradients[&set - sets];
-      ForElements(block, index, set.size,
-                  [&](int64_t i) { StepNumber(set, i, gradient[i], shared.size); });
+      ForElements(block, index, set.size, [&](int64_t i) {
+        if (i >= set.trained) return StepStatistic(set, i);
+        StepNumber(set, i, gradient[i], shared.size);
+      });
     }
     // All blocks read the state and the flag, so only the last of them changes both.
     if (!block.FinishesLast(finished, block.count())) return;
@@ -212,9 +223,10 @@ struct EndUpdate {
     const AdamSet& set = SetOfBlock(sets, &index);
     if (states[&set - sets]->taken == 0) return;
     ForElements(block, index, set.size, [&](int64_t i) {
+      set.Set(i, set.former_value[i]);
+      if (i >= set.trained) return;
       set.m[i] = set.former_m[i];
       set.v[i] = set.former_v[i];
-      set.Set(i, set.former_value[i]);
     });
   }
 };

@@ -23,6 +23,7 @@ class OptimiserKernels : public KernelTest {
     const auto n = size_t(set.trained_size());
     const std::vector<float> zeros(n, 0.f);
     return {.size = int64_t(n),
+            .trained = int64_t(n),
             .value = In(std::vector<float>(set.values(), set.values() + n)),
             .m = In(zeros),
             .v = In(zeros),
@@ -139,6 +140,51 @@ TEST_F(OptimiserKernels, AnUpdateThatIsNotFiniteLeavesNothing) {
   Run(end);
   EXPECT_EQ(ValuesOf(large.value, large.size), values);
   EXPECT_EQ(state_->steps, 1);
+}
+
+// Statistics follow the trained numbers of a set, within the same block.
+TEST_F(OptimiserKernels, AStepAppliesMeasuredStatisticsAndAnUndoRestoresThem) {
+  constexpr int64_t kTrained = 64, kSize = 64 + 1500;
+  ParameterSet plain{{{"plain", {kTrained}}}, ParameterSet::Use::kTraining};
+  const std::vector<float> values = Random(size_t(kSize)), next = Random(size_t(kSize - kTrained));
+  const AdamSet set{.size = kSize,
+                    .trained = kTrained,
+                    .value = In(values),
+                    .m = In(std::vector<float>(kTrained, 0.f)),
+                    .v = In(std::vector<float>(kTrained, 0.f)),
+                    .former_value = Out(size_t(kSize)),
+                    .former_m = Out(kTrained),
+                    .former_v = Out(kTrained),
+                    .rounded = Out<uint16_t>(size_t(kSize)),
+                    .next_statistics = In(next)};
+  std::copy_n(values.begin(), kTrained, plain.values());
+  const Adam step{.set_count = 1,
+                  .sets = {set},
+                  .gradients = {NewGradients(&plain)},
+                  .options = {.rate = kRate, .epsilon = kEpsilon},
+                  .squares = In(std::vector<double>{1.0}),
+                  .state = state_,
+                  .flags = flags_,
+                  .finished = Counters(1)};
+  flags_->held = 1;
+  Run(step);
+  EXPECT_EQ(ValuesOf(set.value, kSize), values) << "a held step";
+  flags_->held = 0;
+  Run(step);
+  nn::Adam expected({&plain}, {.rate = kRate, .epsilon = kEpsilon});
+  expected.Step();
+  ExpectClose(set.value, {plain.values(), size_t(kTrained)}, 1e-6);
+  EXPECT_EQ(ValuesOf(set.value + kTrained, kSize - kTrained), next);
+  EXPECT_EQ(set.rounded[1000], ToBf16(set.value[1000]));
+  flags_->finite = 0;
+  Run(EndUpdate{.set_count = 1,
+                .sets = {set},
+                .states = {state_},
+                .counts = {true},
+                .flags = flags_,
+                .finished = Counters(1)});
+  EXPECT_EQ(ValuesOf(set.value, kSize), values);
+  EXPECT_EQ(ValuesOf(set.m, kTrained), std::vector<float>(kTrained, 0.f));
 }
 
 TEST_F(OptimiserKernels, AStepThatWouldOverflowClearsTheFlag) {
