@@ -60,7 +60,7 @@ void LearnerDevice::Choose(const RunConfig& run) {
 }
 
 void LearnerDevice::Open(const RunConfig& run) {
-  device::CheckComputes(run.config, run.spec);
+  device::CheckComputes(run.config);
   card_ = OpenCard();
   device_.reset(card_->reply.device);
   record_.device = "cuda";
@@ -99,7 +99,7 @@ bool UsesGpu(const LearnerConfig& learner) {
 void CheckLearnerDevice(const RunConfig& run) {
   if (run.config.learner.device != "cuda") return;
   try {
-    device::CheckComputes(run.config, run.spec);
+    device::CheckComputes(run.config);
     ProbeCard();
   } catch (const Error& e) {
     throw UsageError("learner.device = cuda: {}", e.what());

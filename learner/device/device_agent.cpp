@@ -7,11 +7,9 @@
 #include <vector>
 
 #include "common/base/error.h"
-#include "common/nn/actor_critic_plan.h"
 #include "learner/agent/algorithms.h"
 #include "learner/agent/wrapped_agent.h"
 #include "learner/device/device_engine.h"
-#include "learner/device/modules/device_encoder.h"
 
 namespace shoal::learner::device {
 namespace {
@@ -34,7 +32,7 @@ class DeviceAgent final : public WrappedAgent {
 
 }  // namespace
 
-void CheckComputes(const Config& config, const ObservationSpec& spec) {
+void CheckComputes(const Config& config) {
   const Algorithm& algorithm = FindAlgorithm(config.learner.algorithm);
   if (!algorithm.on_devices) {
     std::vector<std::string_view> names;
@@ -45,14 +43,11 @@ void CheckComputes(const Config& config, const ObservationSpec& spec) {
         "learner.algorithm = {}: a device does not compute this algorithm, expected {}",
         algorithm.name, fmt::join(names, " | "));
   }
-  if (spec.HasPixels()) {
-    CheckEncoder(nn::PlanEncoder(config.network, spec), config.network.encoder);
-  }
 }
 
 std::unique_ptr<Agent> MakeDeviceAgent(const Config& config, const ObservationSpec& spec,
                                        nn::Precision precision, Device* device) {
-  CheckComputes(config, spec);
+  CheckComputes(config);
   return std::make_unique<DeviceAgent>(config, spec, precision, device);
 }
 

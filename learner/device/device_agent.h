@@ -14,7 +14,7 @@ namespace shoal::learner::device {
 
 // Throws Error (kUsage), one line, if DeviceEngine does not compute the configuration: it names the
 // key, its value and what is computed.
-void CheckComputes(const Config& config, const ObservationSpec& spec);
+void CheckComputes(const Config& config);
 
 // Makes the agent of config.learner.algorithm, with one engine on the device, which it borrows.
 // Throws the errors of FindAlgorithm and CheckComputes.

@@ -116,6 +116,30 @@ void TryUpdatesOf(Device* device, const Setting& setting, int updates, int batch
         .passed = figure <= limit});
 }
 
+// Losses and norms of gradients of one update, for a network whose later updates differ by
+// rounding: each ReLU that rounding switches changes a gradient, and Adam's first steps have the
+// size of the rate whatever the size of a gradient.
+void TryFirstUpdateOf(Device* device, const Setting& setting, int batch, const Show& show) {
+  const Config config = ConfigOf(setting, batch);
+  const ObservationSpec spec = SpecOf(setting);
+  const bench::NoiseBatch noise(config, spec);
+  const auto outcome =
+      MakeDeviceAgent(config, spec, setting.precision, device)->Update(noise.batch);
+  const auto expected = learner::MakeAgent(config, spec, setting.precision)->Update(noise.batch);
+  const auto &some = outcome.figures.entries(), &other = expected.figures.entries();
+  double worst = some.size() == other.size() ? 0 : std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < std::min(some.size(), other.size()); ++i) {
+    const double difference = std::abs(some[i].value - other[i].value);
+    worst = std::max(worst, difference / (1 + std::abs(other[i].value)));
+  }
+  show({.trial = fmt::format("first figures of {}, {}, {}", setting.algorithm, setting.encoder,
+                             nn::ToString(setting.precision)),
+        .figure = worst,
+        .unit = "relative difference",
+        .limit = kF32Drift,
+        .passed = worst <= kF32Drift});
+}
+
 void TimeUpdatesOf(Device* device, const std::string& encoder, int batch, double seconds,
                    std::optional<double> least, const Show& show) {
   const Setting setting{.algorithm = "sac", .encoder = encoder, .precision = nn::Precision::kBf16};
@@ -162,6 +186,9 @@ void TryUpdates(Device* device, bool quick, const Show& show) {
     const int minibatches = *encoder == '\0' ? 40 : kEpochs * kMinibatches;
     TryUpdatesOf(device, {"ppo", encoder, nn::Precision::kF32}, minibatches, 16, show);
   }
+  // The CPU takes up to half a second for an update of these.
+  TryUpdatesOf(device, {"sac", "alexnet", nn::Precision::kF32}, 5, 16, show);
+  TryFirstUpdateOf(device, {"td3", "resnet18", nn::Precision::kF32}, 16, show);
   // The CPU's engine needs a CPU with bf16.
   if (nn::ChoosePrecision("auto", /*pixels=*/true) == nn::Precision::kBf16) {
     TryUpdatesOf(device, {"sac", "compact", nn::Precision::kBf16}, 200, 16, show);
@@ -178,6 +205,8 @@ void TimeUpdates(Device* device, bool quick, double seconds, const Show& show) {
   TimeUpdatesOf(device, "drq", 256, seconds, 404, show);
   TimeUpdatesOf(device, "nature", 256, seconds, std::nullopt, show);
   TimeUpdatesOf(device, "spatial_softmax", 128, seconds, std::nullopt, show);
+  TimeUpdatesOf(device, "alexnet", 128, seconds, std::nullopt, show);
+  TimeUpdatesOf(device, "resnet18", 128, seconds, std::nullopt, show);
 }
 
 }  // namespace shoal::trial

@@ -5,14 +5,17 @@
 
 #include "common/base/error.h"
 #include "common/config/config_io.h"
+#include "common/nn/actor_critic_plan.h"
+#include "common/nn/encoder_module.h"
+#include "common/nn/encoders/encoder_kind.h"
 #include "tests/learner/device/device_fixture.h"
 
 namespace shoal::learner::device {
 namespace {
 
-std::string Refusal(const Config& config, const ObservationSpec& spec) {
+std::string Refusal(const Config& config) {
   try {
-    CheckComputes(config, spec);
+    CheckComputes(config);
   } catch (const Error& error) {
     EXPECT_EQ(error.exit_code(), int(ErrorKind::kUsage));
     return error.what();
@@ -20,28 +23,33 @@ std::string Refusal(const Config& config, const ObservationSpec& spec) {
   return "";
 }
 
-TEST(DeviceAgent, RefusesWhatADeviceDoesNotCompute) {
-  Config config = SmallConfig();
-  EXPECT_EQ(Refusal(config, SmallSpec()), "");
-  config.network.filters.clear();
-  config.network.strides.clear();
-  config.network.encoder = "resnet18";
-  ObservationSpec spec = SmallSpec();
-  spec.height = spec.width = 64;
-  EXPECT_EQ(
-      Refusal(config, spec),
-      "network.encoder = resnet18: a device does not compute this encoder, expected compact | "
-      "drq | mrq | nature | spatial_softmax");
-  WithoutPixels(&spec);
-  EXPECT_EQ(Refusal(config, spec), "");
+// A preset or an algorithm that only the CPU computes would leave the GPU unused with
+// learner.device=auto.
+TEST(DeviceAgent, EveryPresetAndAlgorithmIsComputed) {
+  for (const std::string& name : ListPresets()) EXPECT_EQ(Refusal(LoadPreset(name)), "") << name;
+  for (const Algorithm& algorithm : Algorithms()) {
+    Config config = SmallConfig();
+    config.learner.algorithm = algorithm.name;
+    EXPECT_EQ(Refusal(config), "") << algorithm.name;
+  }
 }
 
-// A preset that only the CPU computes would leave the GPU unused with learner.device=auto.
-TEST(DeviceAgent, EveryPresetIsComputed) {
-  ObservationSpec spec = SmallSpec();
-  spec.height = spec.width = 84;
-  for (const std::string& name : ListPresets()) {
-    EXPECT_EQ(Refusal(LoadPreset(name), spec), "") << name;
+// A device refuses no encoder, so it must have the layers of each.
+TEST(DeviceAgent, EveryEncoderIsBuilt) {
+  for (const nn::EncoderKind& kind : nn::EncoderKinds()) {
+    Config config = SmallConfig();
+    config.learner.batch = 2;
+    config.network = {};
+    config.network.encoder = kind.name;
+    config.network.initialisation = "pytorch";  // fast
+    ObservationSpec spec = SmallSpec();
+    spec.height = spec.width = 84;
+    HostDevice device;
+    DeviceEngine engine(&device, nn::Precision::kBf16, config.learner.batch);
+    const nn::EncoderModule module(nn::PlanEncoder(config.network, spec),
+                                   nn::Module::Use::kTraining, engine.modules());
+    EXPECT_EQ(module.features().columns(), nn::PlanEncoder(config.network, spec).output().size())
+        << kind.name;
   }
 }
 

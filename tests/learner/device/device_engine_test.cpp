@@ -16,6 +16,16 @@ namespace {
 using testing::IsEmpty;
 using testing::SizeIs;
 
+void ExpectFigures(const UpdateOutcome& outcome, const UpdateOutcome& expected, double tolerance) {
+  const auto &some = outcome.figures.entries(), &other = expected.figures.entries();
+  ASSERT_EQ(some.size(), other.size());
+  for (size_t i = 0; i < some.size(); ++i) {
+    ASSERT_EQ(some[i].figure, other[i].figure);
+    EXPECT_NEAR(some[i].value, other[i].value, tolerance * (1 + std::abs(other[i].value)))
+        << some[i].figure->name;
+  }
+}
+
 class DeviceEngineTest : public testing::TestWithParam<AgentCase> {
  protected:
   DeviceEngineTest() { GetParam().set(&config_, &spec_); }
@@ -209,6 +219,37 @@ const AgentCase kAgentCases[] = {
 
 INSTANTIATE_TEST_SUITE_P(Of, DeviceEngineTest, testing::ValuesIn(kAgentCases),
                          [](const auto& test) { return test.param.name; });
+
+// Encoders whose updates are slow in host memory. residual_learner_test.cpp has the other checks of
+// their layers, with a smaller encoder.
+struct LargeEncoder {
+  const char* name;
+  int height, width;
+};
+
+class LargeEncoderTest : public testing::TestWithParam<LargeEncoder> {};
+
+TEST_P(LargeEncoderTest, TheFirstUpdateIsLikeThatOfTheCpu) {
+  Config config = SmallConfig();
+  ObservationSpec spec = SmallSpec();
+  SetEncoder(GetParam().name, GetParam().height, &config, &spec);
+  spec.width = GetParam().width;
+  config.network.initialisation = "pytorch";  // fast
+  config.learner.batch = 3;
+  OnCpu cpu(config, spec, nn::Precision::kF32);
+  OnDevice device(config, spec, nn::Precision::kF32);
+  const RandomBatch batch(spec, config.learner.batch, 1);
+  const UpdateOutcome expected = cpu.agent->Update(batch.View());
+  const UpdateOutcome outcome = device.agent->Update(batch.View());
+  ASSERT_TRUE(expected.finite && outcome.finite);
+  ExpectFigures(outcome, expected, 1e-4);
+  ExpectNear(device.agent->PolicyTensors(), cpu.agent->PolicyTensors(), 1e-3, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, LargeEncoderTest,
+                         testing::Values(LargeEncoder{"alexnet", 63, 63},
+                                         LargeEncoder{"resnet18", 33, 18}),
+                         [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
 }  // namespace shoal::learner::device

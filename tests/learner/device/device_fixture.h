@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <functional>
-#include <iterator>
 #include <map>
 #include <memory>
 #include <ostream>
+#include <span>
 #include <string>
 
 #include "learner/device/device_engine.h"
@@ -60,15 +60,20 @@ struct OnCpu {
   std::unique_ptr<Agent> agent;
 };
 
-// Euclidean distance of two tensors, relative to the length of the second one.
-inline double Distance(std::span<const float> some, std::span<const float> other) {
+// Euclidean distance of two tensors or more, relative to the length of the second ones.
+struct Distance {
   double squares = 0, length = 0;
-  for (size_t i = 0; i < some.size(); ++i) {
-    squares += (double(some[i]) - other[i]) * (double(some[i]) - other[i]);
-    length += double(other[i]) * other[i];
+
+  void Add(std::span<const float> some, std::span<const float> other) {
+    const float *a = some.data(), *b = other.data();
+    for (size_t i = 0; i < other.size(); ++i) {
+      const double difference = double(a[i]) - double(b[i]);
+      squares += difference * difference;
+      length += double(b[i]) * double(b[i]);
+    }
   }
-  return std::sqrt(squares / std::max(length, 1e-12));
-}
+  double Relative() const { return std::sqrt(squares / std::max(length, 1e-12)); }
+};
 
 // The network that a tensor belongs to, with its moments apart: "actor", "adam.m.actor".
 inline std::string NetworkOf(const std::string& name) {
@@ -81,23 +86,21 @@ inline std::string NetworkOf(const std::string& name) {
 inline void ExpectNear(const nn::TensorMap& some, const nn::TensorMap& other, double tolerance,
                        double moments, const std::string& without_effect = {}) {
   ASSERT_EQ(some.size(), other.size());
-  std::map<std::string, std::pair<std::vector<float>, std::vector<float>>> networks;
+  std::map<std::string, Distance> networks;
   for (const auto& [name, tensor] : other) {
     ASSERT_TRUE(some.contains(name)) << name;
     ASSERT_EQ(some.at(name).shape, tensor.shape) << name;
     if (!without_effect.empty() && name.ends_with(without_effect)) continue;
     if (tensor.dtype == "F32") {
-      auto& [own, others] = networks[NetworkOf(name)];
-      std::ranges::copy(Floats(some, name), std::back_inserter(own));
-      std::ranges::copy(Floats(other, name), std::back_inserter(others));
+      networks[NetworkOf(name)].Add(Floats(some, name), Floats(other, name));
     } else if (!name.ends_with(".moments")) {
       EXPECT_EQ(some.at(name).data, tensor.data) << name;
     }
   }
-  for (const auto& [name, values] : networks) {
+  for (const auto& [name, distance] : networks) {
     const bool is_moments = name.starts_with("adam.");
     if (is_moments && moments == 0) continue;
-    EXPECT_LT(Distance(values.first, values.second), is_moments ? moments : tolerance) << name;
+    EXPECT_LT(distance.Relative(), is_moments ? moments : tolerance) << name;
   }
 }
 
