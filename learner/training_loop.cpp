@@ -102,7 +102,10 @@ std::vector<UpdateOutcome> TrainingLoop::Submit(const BatchView& batch) {
   return outcomes;
 }
 
-void TrainingLoop::FinishUpdates() { OnOutcomes(parts_.agent.Finish()); }
+void TrainingLoop::FinishUpdates() {
+  OnOutcomes(parts_.agent.Finish());
+  weights_.SendCopied(finite_updates_);
+}
 
 void TrainingLoop::OnOutcomes(const std::vector<UpdateOutcome>& outcomes) {
   for (const UpdateOutcome& outcome : outcomes) {
@@ -136,10 +139,12 @@ void TrainingLoop::AfterUpdate(const Batch& batch) {
 }
 
 void TrainingLoop::SendDueWeights() {
-  if (!weights_.DueAfterUpdate()) return;
   const ScopedSeconds timed(seconds_.weights);
-  FinishUpdates();
-  weights_.Send(env_steps_);
+  weights_.SendCopied(finite_updates_);
+  if (!weights_.DueAfterUpdate()) return;
+  weights_.Begin(env_steps_);
+  if (config_.lockstep) FinishUpdates();  // the actors wait for these weights
+  weights_.SendCopied(finite_updates_);
 }
 
 void TrainingLoop::GiveAwaitedWeights() {

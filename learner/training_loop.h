@@ -82,8 +82,9 @@ class TrainingLoop {
   bool TryTrain();
   // Submits the batch to the agent and measures the time of the update's stages.
   std::vector<UpdateOutcome> Submit(const BatchView& batch);
-  // Waits for the updates in flight. Call it before anything leaves the agent: weights,
-  // checkpoints, the state of a resized agent. Throws Error if an update is not finite.
+  // Waits for the updates in flight, and sends weights that were copied. Call it before anything
+  // leaves the agent: weights for which actors wait, checkpoints, the state of a resized agent.
+  // Throws Error if an update is not finite.
   void FinishUpdates();
   // Counts and reports updates whose outcomes are known. Throws Error if one is not finite.
   void OnOutcomes(const std::vector<UpdateOutcome>& outcomes);
@@ -106,7 +107,8 @@ class TrainingLoop {
   bool RatioReached() const;
   // On policy: sends the weights for which actors wait, once; not beyond the budget.
   void GiveAwaitedWeights();
-  // Off policy: sends weights if they are due after this update.
+  // Off policy: sends copied weights whose updates are finite, and begins to copy weights if they
+  // are due after this update.
   void SendDueWeights();
   // Applies settings that were changed during the run.
   void ApplySettings();

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "common/base/check.h"
 #include "common/config/lockstep.h"
 #include "common/config/on_policy.h"
 #include "common/nn/safetensors.h"
@@ -22,23 +23,37 @@ WeightsSender::WeightsSender(const RunConfig& run, nn::Precision precision, uint
 
 bool WeightsSender::DueAfterUpdate() {
   due_ = due_ || Due(agent_.updates());
-  return due_ && (awaited_ || Now() - last_sent_ >= kPatience || sink_.WeightsArrived());
+  return due_ && !copied_ &&
+         (awaited_ || Now() - last_sent_ >= kPatience || sink_.WeightsArrived());
 }
 
-void WeightsSender::Send(uint64_t env_steps) {
-  const std::string bytes = Serialised();
+void WeightsSender::Begin(uint64_t env_steps) {
+  CHECK(!copied_) << "the weights of update " << copied_->updates << " are on their way";
+  copied_ = Copied{agent_.updates(), env_steps, agent_.CopyPolicyTensors()};
+  due_ = false;
+}
+
+void WeightsSender::SendCopied(uint64_t finite_updates) {
+  if (!copied_ || copied_->updates > finite_updates) return;
+  Copied copied = *std::exchange(copied_, std::nullopt);
+  const std::string bytes = Serialised(copied.tensors.Take());
   WeightsMessage message;
   message.spec_hash = spec_hash_;
-  message.version = {session_, agent_.updates()};
-  message.env_steps = env_steps;
+  message.version = {session_, copied.updates};
+  message.env_steps = copied.env_steps;
   message.payload = {reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()};
-  due_ = !sink_.Publish(message);
-  ++(due_ ? unsent_ : sent_);
+  const bool sent = sink_.Publish(message);
+  due_ = due_ || !sent;
+  ++(sent ? sent_ : unsent_);
   last_sent_ = Now();
 }
 
-std::string WeightsSender::Serialised() const {
-  nn::TensorMap tensors = agent_.PolicyTensors();
+void WeightsSender::Send(uint64_t env_steps) {
+  Begin(env_steps);
+  SendCopied(agent_.updates());
+}
+
+std::string WeightsSender::Serialised(nn::TensorMap tensors) const {
   if (rounds_) tensors = nn::ToBf16(std::move(tensors));
   return nn::WriteSafetensors(tensors, {});
 }

@@ -8,14 +8,20 @@
 // If readers have not yet received the last weights, the next weights are delayed by at most
 // kPatience, so that slow readers also receive complete weights. In lockstep and on policy there is
 // no delay, because actors wait for the next weights.
+//
+// Weights leave an agent in two steps, so that an agent with updates in flight continues with
+// further updates: Begin starts a copy, and SendCopied sends it when its last update is known to be
+// finite. At most one copy is on its way.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "common/base/clock.h"
 #include "common/config/run_config.h"
+#include "common/nn/pending_tensors.h"
 #include "common/nn/precision.h"
 #include "learner/agent/agent.h"
 #include "learner/learner_sink.h"
@@ -28,8 +34,14 @@ class WeightsSender {
   WeightsSender(const RunConfig& run, nn::Precision precision, uint64_t session, const Agent& agent,
                 LearnerSink& sink);
 
-  // Call after each update. Returns whether it is time to send.
+  // Call after each update. Returns whether it is time to begin, which is never while a copy is on
+  // its way; weights that become due meanwhile begin after it.
   bool DueAfterUpdate();
+  // Begins a copy of the weights of the update that was submitted last.
+  void Begin(uint64_t env_steps);
+  // Waits for the copy that was begun and sends it, if all its updates are among the first
+  // `finite_updates` updates, which are known to be finite.
+  void SendCopied(uint64_t finite_updates);
   // Sends at once. No update of the agent may be in flight.
   void Send(uint64_t env_steps);
 
@@ -49,9 +61,14 @@ class WeightsSender {
   static constexpr std::chrono::milliseconds kPatience{500};
 
  private:
+  struct Copied {
+    uint64_t updates, env_steps;
+    nn::PendingTensors tensors;
+  };
+
   // Returns the weights as bytes. Weights are copied three times: from the agent, into these bytes,
   // and by the transport. At most two copies exist at the same time.
-  std::string Serialised() const;
+  std::string Serialised(nn::TensorMap tensors) const;
   bool Due(uint64_t updates);
 
   const Config config_;
@@ -61,6 +78,7 @@ class WeightsSender {
   LearnerSink& sink_;
   const bool awaited_;  // actors do not step until the weights arrive
   uint64_t period_;
+  std::optional<Copied> copied_;
   bool due_ = false;
   SteadyTime last_sent_{};
   int64_t phase_ = 0;  // lockstep: the first unfinished phase

@@ -7,18 +7,23 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 
 namespace shoal::nn {
 
-// Mirror of the values of a ParameterSet, which owns it. The engine attaches the mirror. Both
-// functions return when the copy is complete.
+// Mirror of the values of a ParameterSet, which owns it. The engine attaches the mirror. Fetch and
+// Send return when the copy is complete.
 class ParameterMirror {
  public:
   virtual ~ParameterMirror() = default;
 
+  // Begins a copy of the mirror's values as the work leaves them that the engine has submitted so
+  // far. Later work does not change the copy. The returned function waits until the copy is
+  // complete and writes it to an array of the host.
+  virtual std::function<void(float* values)> BeginFetch() = 0;
   // Copies the mirror's values to `values`, the array of the host.
-  virtual void Fetch(float* values) = 0;
+  void Fetch(float* values) { BeginFetch()(values); }
   // Copies `values`, the array of the host, to the mirror.
   virtual void Send(const float* values) = 0;
 };

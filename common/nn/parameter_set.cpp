@@ -212,6 +212,15 @@ void ParameterSet::Export(const float* array, const std::string& prefix, TensorM
   ExportFirst(specs_.size(), array, prefix, tensors);
 }
 
+void ParameterSet::Export(PendingTensors* tensors) const {
+  if (!host_is_old_) return Export(tensors->arrived());
+  tensors->Add([this, read = mirror_->BeginFetch()](TensorMap* arrived) {
+    auto fetched = std::vector<float>(size_t(size_));
+    read(fetched.data());
+    Export(fetched.data(), "", arrived);
+  });
+}
+
 void ParameterSet::ExportTrained(const float* array, const std::string& prefix,
                                  TensorMap* tensors) const {
   ExportFirst(trained_, array, prefix, tensors);

@@ -12,6 +12,7 @@
 
 #include "common/nn/network_plan.h"
 #include "common/nn/parameter_mirror.h"
+#include "common/nn/pending_tensors.h"
 #include "common/nn/replica.h"
 #include "common/nn/safetensors.h"
 
@@ -140,6 +141,8 @@ class ParameterSet {
   void Export(const float* array, const std::string& prefix, TensorMap* tensors) const;
   // Exports the values under their own names.
   void Export(TensorMap* tensors) const { Export(values(), "", tensors); }
+  // Does the same without waiting: if the mirror has newer values, begins a copy of them.
+  void Export(PendingTensors* tensors) const;
   // Reads F32 and BF16 tensors into `array`. If a tensor is missing or has a wrong type or shape,
   // throws Error that names the tensor; `array` does not change then.
   void Import(const TensorViews& tensors, const std::string& prefix, const std::string& source,

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "common/base/check.h"
+#include "common/nn/pending_tensors.h"
 #include "common/nn/safetensors.h"
 #include "common/wire/batch_schema.h"
 #include "learner/agent/update_figures.h"
@@ -60,14 +61,20 @@ class Agent {
   virtual std::vector<UpdateOutcome> Submit(const BatchView& batch,
                                             const OnStageEnd& on_stage_end) = 0;
   // Waits for all updates in flight and returns their outcomes. Required before the functions below
-  // that read or write tensors.
+  // that read or write tensors, except CopyPolicyTensors.
   virtual std::vector<UpdateOutcome> Finish() { return {}; }
   // Number of updates done or in flight, including those before a checkpoint.
   virtual uint64_t updates() const = 0;
 
   // F32 parameters that an actor needs, with the names that nn::Policy::Load reads.
   virtual nn::TensorMap PolicyTensors() const = 0;
-  // The same, averaged over the latest updates: the policy that is evaluated and stored in
+  // Begins a copy of these parameters as the updates submitted so far leave them, also if some are
+  // in flight. Updates submitted later do not change the copy and do not wait for it. If an update
+  // before the copy is not finite, the copy must not be used. The default waits for the copy.
+  virtual nn::PendingTensors CopyPolicyTensors() const {
+    return nn::PendingTensors(PolicyTensors());
+  }
+  // PolicyTensors, averaged over the latest updates: the policy that is evaluated and stored in
   // checkpoints.
   virtual nn::TensorMap AveragedPolicyTensors() const = 0;
   // Everything an exact resume needs: parameters, targets, averages, optimisers, counters.

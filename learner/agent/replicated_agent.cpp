@@ -43,6 +43,8 @@ class ReplicatedAgent final : public Agent {
   }
   uint64_t updates() const override { return agents_[0]->updates(); }
   nn::TensorMap PolicyTensors() const override { return Finished().PolicyTensors(); }
+  // An engine of the CPU has computed an update when Submit returns.
+  nn::PendingTensors CopyPolicyTensors() const override { return agents_[0]->CopyPolicyTensors(); }
   nn::TensorMap AveragedPolicyTensors() const override {
     return Finished().AveragedPolicyTensors();
   }

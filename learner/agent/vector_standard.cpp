@@ -51,10 +51,19 @@ void VectorStandard::Add(const BatchView& batch) {
 }
 
 void VectorStandard::ExportTo(nn::TensorMap* policy) const {
+  nn::PendingTensors pending;
+  ExportTo(&pending);
+  policy->merge(pending.Take());
+}
+
+void VectorStandard::ExportTo(nn::PendingTensors* policy) const {
   if (!observed_) return;
-  const std::vector<double> moments = engine_->ReadMoments(observed_->moments);
-  (*policy)[nn::kObservationMean] = Vector(MeanOf(moments));
-  (*policy)[nn::kObservationVariance] = Vector(VarianceOf(moments, variance_floor_));
+  policy->Add([floor = variance_floor_,
+               read = engine_->CopyMoments(observed_->moments)](nn::TensorMap* arrived) {
+    const std::vector<double> moments = read();
+    (*arrived)[nn::kObservationMean] = Vector(MeanOf(moments));
+    (*arrived)[nn::kObservationVariance] = Vector(VarianceOf(moments, floor));
+  });
 }
 
 void VectorStandard::AddTo(AgentState* state) {

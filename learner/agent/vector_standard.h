@@ -12,6 +12,7 @@
 #include <string>
 
 #include "common/config/config.h"
+#include "common/nn/pending_tensors.h"
 #include "common/nn/safetensors.h"
 #include "common/wire/batch_schema.h"
 #include "learner/agent/agent_state.h"
@@ -32,8 +33,10 @@ class VectorStandard {
   // Adds the unscaled vectors of a whole batch to the moments.
   void Add(const BatchView& batch);
 
-  // Adds mean and variance to a policy's tensors.
+  // Adds mean and variance to a policy's tensors. The second function does not wait for updates in
+  // flight.
   void ExportTo(nn::TensorMap* policy) const;
+  void ExportTo(nn::PendingTensors* policy) const;
   // Adds the moments, if there are any, to `state`, which borrows them.
   void AddTo(AgentState* state);
 

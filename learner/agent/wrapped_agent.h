@@ -19,6 +19,7 @@ class WrappedAgent : public Agent {
   std::vector<UpdateOutcome> Finish() override { return agent_->Finish(); }
   uint64_t updates() const override { return agent_->updates(); }
   nn::TensorMap PolicyTensors() const override { return agent_->PolicyTensors(); }
+  nn::PendingTensors CopyPolicyTensors() const override { return agent_->CopyPolicyTensors(); }
   nn::TensorMap AveragedPolicyTensors() const override { return agent_->AveragedPolicyTensors(); }
   nn::TensorMap AllTensors() const override { return agent_->AllTensors(); }
   void Restore(const nn::TensorMap& tensors, const std::string& source) override {

@@ -122,13 +122,14 @@ std::vector<float> DeviceEngine::ReadRows(Array array) const {
   return values;
 }
 
-std::vector<double> DeviceEngine::ReadMoments(Moments moments) const {
+std::function<std::vector<double>()> DeviceEngine::CopyMoments(Moments moments) const {
   CHECK(!updating_);
-  std::vector<double> values(size_t(moments.size()));
-  device_->CopyOut(Lane::kCommands, AddressOf(moments), int64_t(values.size() * sizeof(double)),
-                   values.data());
-  device_->Finish();
-  return values;
+  const auto size = size_t(moments.size());
+  return [size, copy = workspace_.host_copies().Begin(AddressOf(moments),
+                                                      int64_t(size * sizeof(double)))] {
+    const auto* values = static_cast<const double*>(copy->Wait());
+    return std::vector<double>(values, values + size);
+  };
 }
 
 void DeviceEngine::SetMoments(Moments moments, std::span<const double> values) {

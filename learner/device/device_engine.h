@@ -48,7 +48,7 @@ class DeviceEngine final : public Engine {
   Outcome WaitOutcome() override;
   double Read(Number number) const override;
   std::vector<float> ReadRows(Array array) const override;
-  std::vector<double> ReadMoments(Moments moments) const override;
+  std::function<std::vector<double>()> CopyMoments(Moments moments) const override;
   void SetMoments(Moments moments, std::span<const double> values) override;
 
   void JoinColumns(Array left, Array right, std::span<const ObservationSpec::Range> ranges,

@@ -53,10 +53,11 @@ DeviceParameters& DeviceParameters::Attach(Workspace* workspace, const Parameter
   return Of(set);
 }
 
-void DeviceParameters::Fetch(float* values) {
-  std::vector<float> ordered(size_t(layout_.size()));
-  CopyOutNow(workspace_->device(), values_, Bytes(ordered), ordered.data());
-  layout_.ToHost(ordered.data(), /*statistics=*/true, values);
+std::function<void(float* values)> DeviceParameters::BeginFetch() {
+  const int64_t bytes = layout_.size() * int64_t(sizeof(float));
+  return [this, copy = workspace_->host_copies().Begin(values_, bytes)](float* values) {
+    layout_.ToHost(static_cast<const float*>(copy->Wait()), /*statistics=*/true, values);
+  };
 }
 
 void DeviceParameters::Send(const float* values) {

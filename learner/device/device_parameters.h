@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -41,7 +42,7 @@ class DeviceParameters final : public nn::ParameterMirror {
   static DeviceParameters& Attach(Workspace* workspace, const ParameterLayout& layout,
                                   nn::ParameterSet::Use use, const nn::ParameterSet& set);
 
-  void Fetch(float* values) override;
+  std::function<void(float* values)> BeginFetch() override;
   void Send(const float* values) override;
 
   const ParameterLayout& layout() const { return layout_; }

@@ -43,6 +43,8 @@ class HostDevice final : public Device {
   int64_t FreeMemory() const override { return info_.memory_bytes - allocated_; }
   // Bytes that are allocated on the device.
   int64_t allocated() const { return allocated_; }
+  // Pieces of work that were submitted and have not run yet.
+  size_t waiting() const { return lanes_[0].size() + lanes_[1].size(); }
 
   void* Allocate(int64_t bytes) override;
   void Free(void* memory) override;

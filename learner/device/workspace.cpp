@@ -16,7 +16,8 @@ int64_t RoundUp(int64_t n, int64_t unit) { return (n + unit - 1) / unit * unit; 
 Workspace::Workspace(Device* device, nn::Precision precision, int batch)
     : device_(device),
       batch_(batch),
-      compute_type_(precision == nn::Precision::kBf16 ? Type::kBf16 : Type::kF32) {
+      compute_type_(precision == nn::Precision::kBf16 ? Type::kBf16 : Type::kF32),
+      host_copies_(std::make_unique<HostCopies>(device)) {
   CHECK(batch > 0) << batch;
 }
 

@@ -4,12 +4,14 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "common/base/error.h"
 #include "common/nn/precision.h"
 #include "learner/device/commands.h"
 #include "learner/device/device.h"
+#include "learner/device/host_copies.h"
 
 namespace shoal::learner::device {
 
@@ -23,6 +25,7 @@ class Workspace {
   Workspace& operator=(const Workspace&) = delete;
 
   Device* device() const { return device_; }
+  HostCopies& host_copies() const { return *host_copies_; }
   int batch() const { return batch_; }
   // Type of large products and convolutions, and of the maps between them.
   Type compute_type() const { return compute_type_; }
@@ -50,6 +53,7 @@ class Workspace {
   Device* const device_;
   const int batch_;
   const Type compute_type_;
+  const std::unique_ptr<HostCopies> host_copies_;
   std::vector<void*> chunks_;
   uint8_t* free_ = nullptr;  // of the last chunk
   int64_t free_bytes_ = 0;

@@ -116,10 +116,10 @@ std::vector<float> CpuEngine::ReadRows(Array array) const {
   return {values.begin(), values.end()};
 }
 
-std::vector<double> CpuEngine::ReadMoments(Moments moments) const {
+std::function<std::vector<double>()> CpuEngine::CopyMoments(Moments moments) const {
   CHECK(!updating_);
   const std::span<const double> values = HostValues(moments);
-  return {values.begin(), values.end()};
+  return [copy = std::vector<double>(values.begin(), values.end())] { return copy; };
 }
 
 void CpuEngine::SetMoments(Moments moments, std::span<const double> values) {

@@ -97,8 +97,12 @@ class Engine {
   virtual double Read(Number number) const = 0;
   // Waits for all updates in flight, and reads this replica's rows. Not within an update.
   virtual std::vector<float> ReadRows(Array array) const = 0;
+  // Begins a copy of moments as the updates so far leave them, without waiting for updates in
+  // flight. The returned function waits for the copy and returns it; it must not outlive the
+  // engine. Not within an update.
+  virtual std::function<std::vector<double>()> CopyMoments(Moments moments) const = 0;
   // Waits for all updates in flight. Not within an update.
-  virtual std::vector<double> ReadMoments(Moments moments) const = 0;
+  std::vector<double> ReadMoments(Moments moments) const { return CopyMoments(moments)(); }
   virtual void SetMoments(Moments moments, std::span<const double> values) = 0;
 
   // ---- Inputs ----

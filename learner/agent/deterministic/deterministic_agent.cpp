@@ -39,7 +39,8 @@ class DeterministicAgent final : public Agent {
                                     const OnStageEnd& on_stage_end) override;
   std::vector<UpdateOutcome> Finish() override { return pending_.Finish(); }
   uint64_t updates() const override { return updates_; }
-  nn::TensorMap PolicyTensors() const override;
+  nn::TensorMap PolicyTensors() const override { return CopyPolicyTensors().Take(); }
+  nn::PendingTensors CopyPolicyTensors() const override;
   nn::TensorMap AveragedPolicyTensors() const override;
   nn::TensorMap AllTensors() const override { return state_.Export(); }
   void Restore(const nn::TensorMap& tensors, const std::string& source) override {
@@ -241,8 +242,8 @@ std::vector<UpdateOutcome> DeterministicAgent::Submit(const BatchView& drawn,
   return outcomes;
 }
 
-nn::TensorMap DeterministicAgent::PolicyTensors() const {
-  nn::TensorMap policy;
+nn::PendingTensors DeterministicAgent::CopyPolicyTensors() const {
+  nn::PendingTensors policy;
   if (encoder_) encoder_->parameters().Export(&policy);
   actor_.parameters().Export(&policy);
   standard_.ExportTo(&policy);

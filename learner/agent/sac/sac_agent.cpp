@@ -55,18 +55,21 @@ class SacAgent final : public Agent {
                                     const OnStageEnd& on_stage_end) override;
   std::vector<UpdateOutcome> Finish() override { return pending_.Finish(); }
   uint64_t updates() const override { return updates_; }
-  nn::TensorMap PolicyTensors() const override { return Policy(networks_.PolicyTensors()); }
+  nn::TensorMap PolicyTensors() const override { return CopyPolicyTensors().Take(); }
+  nn::PendingTensors CopyPolicyTensors() const override {
+    nn::PendingTensors policy = networks_.CopyPolicy();
+    standard_.ExportTo(&policy);
+    return policy;
+  }
   nn::TensorMap AveragedPolicyTensors() const override {
-    return Policy(networks_.AveragedPolicyTensors());
+    nn::TensorMap policy = networks_.AveragedPolicyTensors();
+    standard_.ExportTo(&policy);
+    return policy;
   }
   nn::TensorMap AllTensors() const override { return state_.Export(); }
   void Restore(const nn::TensorMap& tensors, const std::string& source) override;
 
  private:
-  nn::TensorMap Policy(nn::TensorMap parameters) const {
-    standard_.ExportTo(&parameters);
-    return parameters;
-  }
   // A batch as drawn, and as the networks see it.
   struct Seen {
     Transitions drawn;

@@ -186,8 +186,8 @@ void SacNetworks::MoveTarget(float tau) {
   engine_->MoveTowards(tau, targets);
 }
 
-nn::TensorMap SacNetworks::PolicyTensors() const {
-  nn::TensorMap policy;
+nn::PendingTensors SacNetworks::CopyPolicy() const {
+  nn::PendingTensors policy;
   if (encoder_) encoder_->parameters().Export(&policy);
   actor_.parameters().Export(&policy);
   return policy;

@@ -32,6 +32,7 @@
 #include "common/nn/adam.h"
 #include "common/nn/critic_module.h"
 #include "common/nn/encoder_module.h"
+#include "common/nn/pending_tensors.h"
 #include "common/nn/safetensors.h"
 #include "common/spec/observation_spec.h"
 #include "learner/agent/agent_state.h"
@@ -106,9 +107,9 @@ class SacNetworks {
   // average += rate * (policy - average), for encoder and actor (Eq. 12).
   void MovePolicyAverage(float rate) { average_.Move(rate); }
 
-  // Tensors encoder.* and actor.*, F32. The first function returns the newest values, the second
-  // one the moving average (PolicyAverage::Tensors).
-  nn::TensorMap PolicyTensors() const;
+  // Tensors encoder.* and actor.*, F32. The first function begins a copy of the newest values
+  // (Agent::CopyPolicyTensors), the second one returns the moving average (PolicyAverage::Tensors).
+  nn::PendingTensors CopyPolicy() const;
   nn::TensorMap AveragedPolicyTensors() const { return average_.Tensors(); }
   // Adds parameters, targets, averages and optimisers. `state` borrows them.
   void AddTo(AgentState* state);

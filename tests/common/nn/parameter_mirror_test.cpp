@@ -28,9 +28,9 @@ struct MirrorStore {
 class FakeParameters final : public ParameterMirror {
  public:
   explicit FakeParameters(MirrorStore* store) : store_(store) {}
-  void Fetch(float* values) override {
+  std::function<void(float* values)> BeginFetch() override {
     ++store_->fetches;
-    std::copy_n(store_->values.begin(), kMirrored, values);
+    return [copy = store_->values](float* values) { std::copy_n(copy.begin(), kMirrored, values); };
   }
   void Send(const float* values) override {
     ++store_->sends;
@@ -100,6 +100,29 @@ TEST(ParameterMirror, ValuesThatAnEngineHasChangedAreFetchedOnce) {
   set.values()[0] = 9;
   set.UseMirror(/*changes=*/false);
   EXPECT_THAT(store.values, ElementsAre(9, 5, 6));
+}
+
+TEST(ParameterMirror, AnExportThatDoesNotWaitHasTheValuesOfItsBeginning) {
+  ParameterSet set(Specs(), ParameterSet::Use::kTraining);
+  MirrorStore store;
+  set.values()[2] = 7;
+  set.Attach(std::make_unique<FakeParameters>(&store));
+  const auto last = [](PendingTensors* tensors) {
+    return reinterpret_cast<const float*>(tensors->Take().at("w").data.data())[2];
+  };
+  PendingTensors of_host;
+  set.Export(&of_host);
+  EXPECT_EQ(store.fetches, 0) << "the host's values are the newest ones";
+  set.UseMirror(/*changes=*/true);
+  store.values = {1, 2, 3};
+  PendingTensors of_mirror;
+  set.Export(&of_mirror);
+  EXPECT_TRUE(of_mirror.arrived()->empty());
+  store.values = {4, 5, 6};
+  EXPECT_EQ(last(&of_mirror), 3);
+  EXPECT_EQ(last(&of_host), 7);
+  EXPECT_EQ(reinterpret_cast<const float*>(Tensors(set).at("w").data.data())[2], 6)
+      << "the mirror still has newer values than the host";
 }
 
 TEST(ParameterMirror, MomentsAndStepsAreThoseOfTheNewerCopy) {

@@ -98,6 +98,37 @@ TEST_P(DeviceEngineTest, RepeatsItselfBitForBitWithUpdatesInFlight) {
   EXPECT_THAT(Differences(flying.agent->AllTensors(), waiting.agent->AllTensors()), IsEmpty());
 }
 
+// A copy of the policy is begun with updates in flight, and further updates are submitted before it
+// is read.
+TEST_P(DeviceEngineTest, ACopyOfThePolicyHasTheValuesOfItsUpdate) {
+  OnDevice waiting(config_, spec_, nn::Precision::kBf16);
+  OnDevice flying(config_, spec_, nn::Precision::kBf16, 2);
+  const auto submit = [&](uint64_t u) {
+    flying.agent->Submit(Batch(u).View(), [](UpdateStage) {});
+  };
+  for (uint64_t u = 0; u < 12; u += 4) {
+    for (uint64_t v = u; v < u + 2; ++v) {
+      submit(v);
+      waiting.agent->Update(Batch(v).View());
+    }
+    const size_t before = flying.device.waiting();
+    nn::PendingTensors copy = flying.agent->CopyPolicyTensors();
+    EXPECT_GT(before, 0u);
+    EXPECT_GT(flying.device.waiting(), before) << "copies were added and nothing was run";
+    const nn::TensorMap expected = waiting.agent->PolicyTensors();
+    for (uint64_t v = u + 2; v < u + 4; ++v) {
+      submit(v);
+      waiting.agent->Update(Batch(v).View());
+    }
+    EXPECT_THAT(Differences(copy.Take(), expected), IsEmpty());
+    EXPECT_FALSE(Differences(waiting.agent->PolicyTensors(), expected).empty());
+  }
+  flying.agent->Finish();
+  EXPECT_THAT(Differences(flying.agent->AllTensors(), waiting.agent->AllTensors()), IsEmpty());
+  EXPECT_THAT(Differences(flying.agent->PolicyTensors(), waiting.agent->PolicyTensors()),
+              IsEmpty());
+}
+
 // A number that is not finite, in the batch or in a loss, leaves no trace, and neither do the
 // updates in flight behind it.
 TEST_P(DeviceEngineTest, AnUpdateThatIsNotFiniteHasNoEffect) {

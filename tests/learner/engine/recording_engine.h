@@ -32,8 +32,8 @@ class RecordingEngine : public Engine {
   Outcome WaitOutcome() override { return engine_->WaitOutcome(); }
   double Read(Number number) const override { return engine_->Read(number); }
   std::vector<float> ReadRows(Array array) const override { return engine_->ReadRows(array); }
-  std::vector<double> ReadMoments(Moments moments) const override {
-    return engine_->ReadMoments(moments);
+  std::function<std::vector<double>()> CopyMoments(Moments moments) const override {
+    return engine_->CopyMoments(moments);
   }
   void SetMoments(Moments moments, std::span<const double> values) override {
     engine_->SetMoments(moments, values);
