@@ -67,7 +67,7 @@ TEST(OwnAlgorithm, ARunThatNamesItMakesIt) {
 // It has operations on the host.
 TEST(OwnAlgorithm, ADeviceRefusesIt) {
   try {
-    device::CheckComputes(OwnConfig(), SmallSpec());
+    device::CheckComputes(OwnConfig());
     ADD_FAILURE() << "not refused";
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(),
