@@ -105,7 +105,7 @@ TEST(Evaluation, OfARunIsOfTheCheckpointThatItIsJudgedBy) {
   const auto evaluate = [&](const std::string& file) {
     return RunProgram(
         {"shoal", "eval", "--checkpoint", run.path(), "--episodes", "2", "--json", file},
-        std::chrono::seconds(60));
+        std::chrono::seconds(180));  // it may measure baselines
   };
   const ProgramResult good = evaluate(run.parent() / "x.json");
   ASSERT_EQ(ExitCode(good), 0) << good.err;
