@@ -232,37 +232,4 @@ struct LogStdGradient {
   }
 };
 
-// The mean deviation and the entropy of a Gaussian with log deviations (A).
-struct GaussianFigures {
-  static constexpr int kThreads = 32;
-  struct Shared {
-    Reduction<Sums<2>, kThreads> sums;
-  };
-
-  int actions = 0;
-  const float* log_std = nullptr;
-  double *deviation = nullptr, *entropy = nullptr;
-
-  int blocks() const { return 1; }
-  bool operator==(const GaussianFigures&) const = default;
-
-  template <class Block>
-  SHOAL_KERNEL void Run(Block& block, Shared& shared) const {
-    block.Threads([&](int thread) {
-      auto sums = Sums<2>::Zero();
-      ForAll<kThreads>(thread, actions, [&](int64_t j) {
-        sums[0] += std::exp(double(log_std[j]));
-        sums[1] += log_std[j] + (kHalfLogTwoPi + 0.5);
-      });
-      shared.sums.of_thread[thread] = sums;
-    });
-    const Sums<2> total = Combine(block, shared.sums);
-    block.Threads([&](int thread) {
-      if (thread != 0) return;
-      *deviation = total[0] / actions;
-      *entropy = total[1];
-    });
-  }
-};
-
 }  // namespace shoal::learner::kernels

@@ -16,16 +16,6 @@ namespace {
 using testing::IsEmpty;
 using testing::SizeIs;
 
-void ExpectFigures(const UpdateOutcome& outcome, const UpdateOutcome& expected, double tolerance) {
-  const auto &some = outcome.figures.entries(), &other = expected.figures.entries();
-  ASSERT_EQ(some.size(), other.size());
-  for (size_t i = 0; i < some.size(); ++i) {
-    ASSERT_EQ(some[i].figure, other[i].figure);
-    EXPECT_NEAR(some[i].value, other[i].value, tolerance * (1 + std::abs(other[i].value)))
-        << some[i].figure->name;
-  }
-}
-
 class DeviceEngineTest : public testing::TestWithParam<AgentCase> {
  protected:
   DeviceEngineTest() { GetParam().set(&config_, &spec_); }

@@ -214,23 +214,5 @@ TEST_F(ClippedPolicyKernels, ARatioThatOverflowsIsNotFinite) {
   EXPECT_FALSE(std::isfinite(*total)) << *total;
 }
 
-TEST_F(ClippedPolicyKernels, DeviationAndEntropyOfAGaussian) {
-  for (const size_t actions : {1u, 5u, 70u}) {
-    const std::vector<float> log_std = Random(actions, -3, 2);
-    const GaussianFigures figures{.actions = int(actions),
-                                  .log_std = In(log_std),
-                                  .deviation = Out<double>(1),
-                                  .entropy = Out<double>(1)};
-    Run(figures);
-    double deviation = 0, entropy = 0;
-    for (const float s : log_std) {
-      deviation += std::exp(double(s)) / double(actions);
-      entropy += s + std::log(2 * M_PI * M_E) / 2;
-    }
-    ExpectNumber(figures.deviation, deviation);
-    ExpectNumber(figures.entropy, entropy);
-  }
-}
-
 }  // namespace
 }  // namespace shoal::learner::kernels

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "learner/device/kernels/policy_heads.h"
 #include "learner/engine/losses.h"
 #include "learner/engine/squashed_gaussian.h"
 #include "tests/learner/device/kernels/kernel_fixture.h"
@@ -142,6 +143,24 @@ TEST_F(GaussianKernels, NoiseIsClippedTwice) {
   for (size_t i = 0; i < kNumbers; ++i) {
     EXPECT_EQ(noisy[i],
               float(std::clamp(action[i] + std::clamp(0.4 * noise[i], -0.5, 0.5), -1.0, 1.0)));
+  }
+}
+
+TEST_F(GaussianKernels, DeviationAndEntropyOfAGaussian) {
+  for (const size_t actions : {1u, 5u, 70u}) {
+    const std::vector<float> log_std = Random(actions, -3, 2);
+    const GaussianFigures figures{.actions = int(actions),
+                                  .log_std = In(log_std),
+                                  .deviation = Out<double>(1),
+                                  .entropy = Out<double>(1)};
+    Run(figures);
+    double deviation = 0, entropy = 0;
+    for (const float s : log_std) {
+      deviation += std::exp(double(s)) / double(actions);
+      entropy += s + std::log(2 * M_PI * M_E) / 2;
+    }
+    EXPECT_NEAR(*figures.deviation, deviation, 1e-12 * deviation);
+    EXPECT_NEAR(*figures.entropy, entropy, 1e-12 * (1 + std::abs(entropy)));
   }
 }
 

@@ -2,6 +2,7 @@
 // Compares the kernels of losses with the operations of the CPU.
 #include "learner/device/kernels/losses.h"
 
+#include "learner/device/kernels/critic_loss.h"
 #include "learner/engine/losses.h"
 #include "tests/learner/device/kernels/kernel_fixture.h"
 
