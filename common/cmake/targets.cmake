@@ -5,8 +5,8 @@ if(SHOAL_WARNINGS_AS_ERRORS)
   list(APPEND SHOAL_WARNINGS -Werror)
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 13)
-  # It reports references to objects that live long, if a function that returns one has a temporary
-  # as its argument, for example FindTask("Hopper-v5").
+  # This warning reports references to objects that live long, if the function that returns the
+  # reference has a temporary as its argument, for example FindTask("Hopper-v5").
   list(APPEND SHOAL_WARNINGS -Wno-dangling-reference)
 endif()
 
