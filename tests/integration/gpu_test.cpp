@@ -18,7 +18,6 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::Not;
 using Environment = std::vector<std::pair<std::string, std::string>>;
 
 constexpr std::chrono::seconds kGpuDeadline{180};

@@ -90,6 +90,7 @@ class DeterministicAgent final : public Agent {
 // Values of all Q functions.
 std::vector<Array> ValuesOf(const nn::CriticModule& critic) {
   std::vector<Array> q;
+  q.reserve(size_t(critic.count()));
   for (int i = 0; i < critic.count(); ++i) q.push_back(critic.q(i));
   return q;
 }

@@ -55,7 +55,7 @@ class DeviceEncoderTest : public testing::Test {
     for (int i = 0; i < kEncoded * int(map.size()); ++i) {
       const int pixels = map.height * map.width, pixel = i % pixels;
       const int channel = i / pixels % map.channels, row = i / pixels / map.channels;
-      body(size_t(i), size_t((row * pixels + pixel) * features.padded_channels() + channel));
+      body(size_t(i), (size_t(row) * pixels + pixel) * features.padded_channels() + channel);
     }
   }
   void ExpectFeatures(nn::Statistics statistics) {

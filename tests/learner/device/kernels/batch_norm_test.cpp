@@ -35,12 +35,12 @@ class BatchNormKernels : public KernelTest {
   }
 
   void Measure(const Source& x) {
-    constexpr double n = kRows;
-    Run(ChannelMeans{.sums = NewSums(1), .x = x, .inverse = float(1 / n), .mean = mean_});
+    constexpr double kN = kRows;
+    Run(ChannelMeans{.sums = NewSums(1), .x = x, .inverse = float(1 / kN), .mean = mean_});
     Run(ChannelVariances{.sums = NewSums(1),
                          .x = x,
-                         .inverse = float(1 / n),
-                         .unbiased = float(n / (n - 1)),
+                         .inverse = float(1 / kN),
+                         .unbiased = float(kN / (kN - 1)),
                          .mean = mean_,
                          .variance = variance_,
                          .running_mean = In(running_mean_),
@@ -221,6 +221,7 @@ TEST_F(BatchNormKernels, GradientsWithoutAnActivation) { CompareGradients(Activa
 TEST_F(BatchNormKernels, Bf16IsReadAndWritten) {
   const auto narrow = [&](const std::vector<float>& values) {
     std::vector<uint16_t> rounded;
+    rounded.reserve(values.size());
     for (const float value : values) rounded.push_back(ToBf16(value));
     return In(rounded);
   };

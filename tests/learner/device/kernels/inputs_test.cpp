@@ -18,7 +18,7 @@ class InputKernels : public KernelTest {
   void ComparePool(int height, int width, int pool) {
     constexpr int kBatch = 2, kChannels = 5, kPadded = 8;
     std::vector<uint8_t> frames;
-    for (const float x : Random(size_t(kBatch * kChannels * height * width), 0, 255.9)) {
+    for (const float x : Random(size_t(kBatch * kChannels) * height * width, 0, 255.9)) {
       frames.push_back(uint8_t(x));
     }
     const int rows = height / pool, columns = width / pool;

@@ -60,6 +60,7 @@ TEST_F(LossKernels, CriticsOfOneOrMoreFunctions) {
     kernels::CriticLoss loss{.rows = kRows, .critics = critics, .y = In(y)};
     std::vector<std::vector<float>> q;
     std::vector<const float*> all;
+    all.reserve(size_t(critics));
     std::vector<float> least(kRows, INFINITY);
     for (int i = 0; i < critics; ++i) {
       q.push_back(Random(kRows, -2, 5));

@@ -43,7 +43,7 @@ std::vector<PoolShape> AverageShapes() {
 }
 
 size_t InputAt(const PoolShape& s, int b, int u, int v, int c) {
-  return size_t(((b * s.height + u) * s.width + v) * s.channels + c);
+  return ((size_t(b) * s.height + u) * s.width + v) * s.channels + c;
 }
 
 // Calls body(output, row, i, j, channel) for all numbers of the output, in order.

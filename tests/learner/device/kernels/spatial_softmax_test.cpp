@@ -17,10 +17,10 @@ constexpr size_t kMap = size_t(kShape.map_size());
 constexpr size_t kPoints = size_t(kShape.batch) * 2 * size_t(kShape.padded);
 
 size_t MapAt(const PointsShape& shape, int row, int pixel, int channel) {
-  return size_t((row * shape.pixels() + pixel) * shape.padded + channel);
+  return (size_t(row) * shape.pixels() + pixel) * shape.padded + channel;
 }
 size_t PointAt(const PointsShape& shape, int row, bool down, int channel) {
-  return size_t((row * 2 + int(down)) * shape.padded + channel);
+  return (size_t(row) * 2 + int(down)) * shape.padded + channel;
 }
 
 double Coordinate(int at, int side) { return side == 1 ? 0 : 2.0 * at / (side - 1) - 1; }
@@ -47,8 +47,8 @@ class SpatialSoftmaxKernels : public KernelTest {
  protected:
   std::vector<float> x_ = Random(kMap, -0.5, 0.5);
   float* points_ = Out(kPoints);
-  float* largest_ = Out(size_t(kShape.batch * kShape.padded));
-  float* total_ = Out(size_t(kShape.batch * kShape.padded));
+  float* largest_ = Out(size_t(kShape.batch) * kShape.padded);
+  float* total_ = Out(size_t(kShape.batch) * kShape.padded);
 };
 
 TEST_F(SpatialSoftmaxKernels, PointsAreMeansOfCoordinatesAndPaddingIsZero) {
