@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "learner/batch_feed.h"
 
+#include <utility>
+
 #include "common/config/on_policy.h"
 #include "common/link/reader.h"
 #include "common/link/writer.h"
@@ -14,10 +16,13 @@ namespace {
 // them.
 class ReplayFeed final : public BatchFeed {
  public:
-  ReplayFeed(const RunConfig& run, uint64_t learner_session, uint64_t updates, link::Hub& hub)
+  ReplayFeed(const RunConfig& run, uint64_t learner_session, uint64_t updates, link::Hub& hub,
+             PinMemory pin)
       : requests_(hub),
-        source_(run, learner_session, updates + 1,
-                [this](const SampleRequest& request) { return Ask(request); }),
+        source_(
+            run, learner_session, updates + 1,
+            [this](const SampleRequest& request) { return Ask(request); },
+            BatchSource::kResendAfter, std::move(pin)),
         parts_(hub, [this](const BatchPart& part) { source_.OnPart(part); }),
         slots_(hub, [this](const BatchSlot& slot) { source_.OnSlot(slot); }) {}
 
@@ -56,11 +61,12 @@ class RolloutFeed final : public BatchFeed {
 }  // namespace
 
 std::unique_ptr<BatchFeed> MakeFeed(const std::filesystem::path& folder, const RunConfig& run,
-                                    uint64_t learner_session, uint64_t updates, link::Hub& hub) {
+                                    uint64_t learner_session, uint64_t updates, link::Hub& hub,
+                                    PinMemory pin) {
   if (LearnsOnPolicy(run.config)) {
     return std::make_unique<RolloutFeed>(folder, run, learner_session, updates, hub);
   }
-  return std::make_unique<ReplayFeed>(run, learner_session, updates, hub);
+  return std::make_unique<ReplayFeed>(run, learner_session, updates, hub, std::move(pin));
 }
 
 }  // namespace shoal::learner

@@ -10,6 +10,7 @@
 #include "common/config/run_config.h"
 #include "common/link/hub.h"
 #include "learner/batch_stream.h"
+#include "learner/pin_memory.h"
 
 namespace shoal::learner {
 
@@ -22,8 +23,10 @@ class BatchFeed {
 };
 
 // Makes the feed that the run's algorithm needs: batches of a replay, or rollouts. `updates`:
-// number of updates before the start. Borrows the hub. Throws Error.
+// number of updates before the start. `pin` is given the memory of batches that a replay has drawn.
+// Borrows the hub. Throws Error.
 std::unique_ptr<BatchFeed> MakeFeed(const std::filesystem::path& folder, const RunConfig& run,
-                                    uint64_t learner_session, uint64_t updates, link::Hub& hub);
+                                    uint64_t learner_session, uint64_t updates, link::Hub& hub,
+                                    PinMemory pin);
 
 }  // namespace shoal::learner

@@ -25,7 +25,7 @@ uint64_t LastRequest(const Config& config) {
 }  // namespace
 
 BatchSource::BatchSource(const RunConfig& run, uint64_t learner_session, uint64_t first_request,
-                         Send send, std::chrono::milliseconds resend_after)
+                         Send send, std::chrono::milliseconds resend_after, PinMemory pin)
     : run_(run),
       spec_hash_(run.spec.Hash()),
       learner_session_(learner_session),
@@ -33,9 +33,10 @@ BatchSource::BatchSource(const RunConfig& run, uint64_t learner_session, uint64_
       schema_(BatchSchemaOf(run)),
       send_(std::move(send)),
       resend_after_(resend_after),
+      pin_(std::move(pin)),
       assembler_(spec_hash_, learner_session, schema_.total_bytes(),
                  run.config.learner.request_credits + 1),
-      slots_(learner_session, schema_.total_bytes()),
+      slots_(learner_session, schema_.total_bytes(), pin_),
       next_request_(first_request) {
   CHECK(first_request > 0);
 }
@@ -235,6 +236,7 @@ std::optional<Batch> BatchSource::FindBatch(uint64_t request) {
   if (slots_.Has(request)) return OpenSlot(request);
   const auto assembled = assembler_.TryGet(request);
   if (!assembled) return std::nullopt;
+  Pin(assembled->data);
   return Batch{.view = schema_.View(assembled->data, assembled->stored_steps),
                .request = request,
                .stored_records = assembled->stored_records,
@@ -255,6 +257,12 @@ std::optional<Batch> BatchSource::OpenSlot(uint64_t request) {
     }
     return std::nullopt;
   }
+}
+
+// The memory of assembled batches is used again, as long as this object lives.
+void BatchSource::Pin(const uint8_t* assembled) {
+  if (!pin_ || pinned_.contains(assembled)) return;
+  pinned_[assembled] = pin_({assembled, schema_.total_bytes()});
 }
 
 // Logs at most one line in kRefusalInterval.

@@ -17,6 +17,8 @@
 #include <chrono>
 #include <deque>
 #include <functional>
+#include <map>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -24,6 +26,7 @@
 #include "common/config/batch_options.h"
 #include "learner/batch_assembler.h"
 #include "learner/batch_stream.h"
+#include "learner/pin_memory.h"
 #include "learner/slot_batches.h"
 
 namespace shoal::learner {
@@ -35,9 +38,9 @@ class BatchSource final : public BatchStream {
 
   // `first_request`: number of the next update, so that a resumed learner continues with the right
   // request. In lockstep, the replay answers a request in the phase of its update, and the last
-  // request is for the run's last update.
+  // request is for the run's last update. `pin` is given the memory of batches at its first use.
   BatchSource(const RunConfig& run, uint64_t learner_session, uint64_t first_request, Send send,
-              std::chrono::milliseconds resend_after = kResendAfter);
+              std::chrono::milliseconds resend_after = kResendAfter, PinMemory pin = {});
 
   void OnPart(const BatchPart& part);
   void OnSlot(const BatchSlot& slot);
@@ -66,6 +69,7 @@ class BatchSource final : public BatchStream {
   std::optional<Batch> FindBatch(uint64_t request) SHOAL_REQUIRES(mutex_);
   // Returns empty if the memory cannot be used; the batch is then requested again.
   std::optional<Batch> OpenSlot(uint64_t request) SHOAL_REQUIRES(mutex_);
+  void Pin(const uint8_t* assembled) SHOAL_REQUIRES(mutex_);
   void SayWay(bool shared) SHOAL_REQUIRES(mutex_);
   void SayRefusal(const char* why) SHOAL_REQUIRES(mutex_);
   void ReleaseHandedOut() SHOAL_REQUIRES(mutex_);
@@ -80,10 +84,13 @@ class BatchSource final : public BatchStream {
   const BatchSchema schema_;
   const Send send_;
   const std::chrono::milliseconds resend_after_;
+  const PinMemory pin_;
 
   mutable Mutex mutex_;
   ConditionVariable arrived_;
   BatchAssembler assembler_ SHOAL_GUARDED_BY(mutex_);
+  // By the address of an assembled batch.
+  std::map<const uint8_t*, std::shared_ptr<const void>> pinned_ SHOAL_GUARDED_BY(mutex_);
   SlotBatches slots_ SHOAL_GUARDED_BY(mutex_);
   std::deque<Outstanding> outstanding_ SHOAL_GUARDED_BY(mutex_);  // ascending request ids
   uint64_t next_request_ SHOAL_GUARDED_BY(mutex_);

@@ -19,6 +19,7 @@
 #include "learner/agent/algorithms.h"
 #include "learner/device/card_loader.h"
 #include "learner/device/device.h"
+#include "learner/pin_memory.h"
 
 namespace shoal::learner {
 
@@ -41,6 +42,8 @@ class LearnerDevice {
   std::string Description() const { return Describe(record_); }
   // Makes the run's agent on the GPU. Not on the CPU.
   std::unique_ptr<Agent> MakeAgent(const RunConfig& run);
+  // Pins memory for the GPU; empty on the CPU. Borrows this object.
+  PinMemory Pin();
   // The use of the GPU; nullopt on the CPU, or if it is unknown.
   std::optional<CardUse> Look() const;
   // Runs `work`. If it throws an Error of the kind kDevice, counts the loss in the run's file.
@@ -64,6 +67,7 @@ class LearnerDevice {
   nn::Precision precision_;
   std::optional<OpenedCard> card_;
   std::unique_ptr<device::Device> device_;
+  bool said_unpinned_ = false;
 };
 
 // Whether a learner of this host would compute on a GPU: learner.device is cuda, or it is auto and

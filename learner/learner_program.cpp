@@ -51,7 +51,7 @@ LearnerProgram::LearnerProgram(const std::filesystem::path& folder, const Proces
       update_page_(folder, agent_.updates()),
       control_(Now()),
       sink_(hub),
-      batches_(MakeFeed(folder, run, session_, agent_.updates(), hub)),
+      batches_(MakeFeed(folder, run, session_, agent_.updates(), hub, device_.Pin())),
       evaluation_subscriber_(
           hub,
           [this](const EvalMessage& m) { pending_evaluations_.OnEvaluated(m.version.update); }),

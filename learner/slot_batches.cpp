@@ -19,12 +19,18 @@ SlotBatches::Verdict SlotBatches::Add(const BatchSlot& slot) {
 
 uint8_t* SlotBatches::Open(uint64_t request) {
   const BatchSlot& word = words_.at(request);
-  auto memory = std::ranges::find(memories_, word.address, &SlotReader::address);
+  auto memory = std::ranges::find_if(
+      memories_, [&](const Memory& mapped) { return mapped.reader->address() == word.address; });
   if (memory == memories_.end()) {
-    memories_.push_back(std::make_unique<SlotReader>(word.address, learner_session_, batch_bytes_));
+    // Memory that may only be read cannot be pinned on every system.
+    auto reader = std::make_unique<SlotReader>(
+        word.address, learner_session_, batch_bytes_,
+        pin_ ? SharedMemory::Access::kReadAndWrite : SharedMemory::Access::kRead);
+    auto pinned = pin_ ? pin_(reader->memory()) : nullptr;
+    memories_.push_back({.reader = std::move(reader), .pinned = std::move(pinned)});
     memory = std::prev(memories_.end());
   }
-  return (*memory)->Batch(word.slot, request);
+  return memory->reader->Batch(word.slot, request);
 }
 
 std::vector<uint64_t> SlotBatches::Refuse(uint64_t request) {
@@ -45,10 +51,10 @@ void SlotBatches::Release(uint64_t request) {
 }
 
 void SlotBatches::Forget() {
-  const SlotReader* newest = memories_.empty() ? nullptr : memories_.back().get();
-  std::erase_if(memories_, [&](const auto& memory) {
-    return memory.get() != newest && std::ranges::none_of(words_, [&](const auto& word) {
-             return word.second.address == memory->address();
+  const SlotReader* newest = memories_.empty() ? nullptr : memories_.back().reader.get();
+  std::erase_if(memories_, [&](const Memory& memory) {
+    return memory.reader.get() != newest && std::ranges::none_of(words_, [&](const auto& word) {
+             return word.second.address == memory.reader->address();
            });
   });
 }

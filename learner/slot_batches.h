@@ -10,10 +10,12 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "common/wire/batch_slots.h"
 #include "common/wire/messages.h"
+#include "learner/pin_memory.h"
 
 namespace shoal::learner {
 
@@ -26,8 +28,8 @@ class SlotBatches {
     kRefused,      // ignored: the slot is in refused memory
   };
 
-  SlotBatches(uint64_t learner_session, uint64_t batch_bytes)
-      : learner_session_(learner_session), batch_bytes_(batch_bytes) {}
+  SlotBatches(uint64_t learner_session, uint64_t batch_bytes, PinMemory pin = {})
+      : learner_session_(learner_session), batch_bytes_(batch_bytes), pin_(std::move(pin)) {}
 
   // Adds a slot message of this session, for a request whose batch is awaited.
   Verdict Add(const BatchSlot& slot);
@@ -52,12 +54,19 @@ class SlotBatches {
   void Release(uint64_t request);
 
  private:
+  // The mapped slots of a replay.
+  struct Memory {
+    std::unique_ptr<SlotReader> reader;
+    std::shared_ptr<const void> pinned;  // destroyed before the reader
+  };
+
   // Unmaps each memory to which no slot message refers, except the newest memory.
   void Forget();
 
   const uint64_t learner_session_, batch_bytes_;
   std::map<uint64_t, BatchSlot> words_;  // by request
-  std::vector<std::unique_ptr<SlotReader>> memories_;
+  const PinMemory pin_;
+  std::vector<Memory> memories_;
   uint64_t refused_token_ = 0;
 };
 

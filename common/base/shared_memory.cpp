@@ -80,10 +80,11 @@ Descriptor SharedMemory::MakeOf(const std::string& label,
   return descriptor;
 }
 
-SharedMemory SharedMemory::Open(int32_t pid, int32_t descriptor, uint64_t bytes) {
+SharedMemory SharedMemory::Open(int32_t pid, int32_t descriptor, uint64_t bytes, Access access) {
+  const bool writes = access == Access::kReadAndWrite;
   const std::string path = fmt::format("/proc/{}/fd/{}", pid, descriptor);
   // The path may name any kind of file, so opening it must neither wait nor take over a terminal.
-  Descriptor opened(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  Descriptor opened(open(path.c_str(), (writes ? O_RDWR : O_RDONLY) | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
   if (opened.get() < 0) {
     throw RuntimeError("cannot open shared memory '{}': {}", path, std::strerror(errno));
   }
@@ -95,7 +96,7 @@ SharedMemory SharedMemory::Open(int32_t pid, int32_t descriptor, uint64_t bytes)
   if (static_cast<uint64_t>(status.st_size) != bytes) {
     throw RuntimeError("shared memory '{}' has {} bytes, expected {}", path, status.st_size, bytes);
   }
-  uint8_t* data = Map(opened.get(), bytes, PROT_READ, 0);
+  uint8_t* data = Map(opened.get(), bytes, writes ? PROT_READ | PROT_WRITE : PROT_READ, 0);
   return {std::move(opened), data, bytes};
 }
 

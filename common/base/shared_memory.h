@@ -33,10 +33,12 @@ class SharedMemory {
   // Make.
   static Descriptor MakeOf(const std::string& label,
                            std::initializer_list<std::string_view> pieces);
-  // Maps the memory of a process on this host for reading. Throws Error if there is no such memory,
-  // if the caller may not read the memory, or if the memory was not made by this class or does not
-  // have `bytes` bytes.
-  static SharedMemory Open(int32_t pid, int32_t descriptor, uint64_t bytes);
+  enum class Access { kRead, kReadAndWrite };
+  // Maps the memory of a process on this host. Throws Error if there is no such memory, if the
+  // caller has no access to it, or if the memory was not made by this class or does not have
+  // `bytes` bytes.
+  static SharedMemory Open(int32_t pid, int32_t descriptor, uint64_t bytes,
+                           Access access = Access::kRead);
 
   SharedMemory(SharedMemory&& other) noexcept
       : descriptor_(std::move(other.descriptor_)),
@@ -45,8 +47,8 @@ class SharedMemory {
   SharedMemory& operator=(SharedMemory&&) = delete;
   ~SharedMemory();
 
-  // The mapping, aligned to a page. If the memory was mapped by Open, a write ends the process
-  // (SIGSEGV).
+  // The mapping, aligned to a page. If the memory was mapped for reading, a write ends the
+  // process (SIGSEGV).
   uint8_t* data() const { return data_; }
   uint64_t bytes() const { return bytes_; }
   int descriptor() const { return descriptor_.get(); }

@@ -120,10 +120,11 @@ BatchSlot SlotWriter::Word(uint32_t slot) const {
           .slot = slot};
 }
 
-SlotReader::SlotReader(const SlotAddress& address, uint64_t learner_session, uint64_t batch_bytes)
+SlotReader::SlotReader(const SlotAddress& address, uint64_t learner_session, uint64_t batch_bytes,
+                       SharedMemory::Access access)
     : address_(address),
       batch_bytes_(batch_bytes),
-      memory_(SharedMemory::Open(address.pid, address.descriptor, address.bytes)) {
+      memory_(SharedMemory::Open(address.pid, address.descriptor, address.bytes, access)) {
   Header header{};
   if (address.bytes >= sizeof header) std::memcpy(&header, memory_.data(), sizeof header);
   if (header.magic != kMagic || header.token[0] != address.token[0] ||

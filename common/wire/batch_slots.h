@@ -22,6 +22,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "common/base/shared_memory.h"
@@ -70,9 +71,12 @@ class SlotWriter {
 class SlotReader {
  public:
   // Throws Error if the memory at the address does not contain the slots of this session.
-  SlotReader(const SlotAddress& address, uint64_t learner_session, uint64_t batch_bytes);
+  SlotReader(const SlotAddress& address, uint64_t learner_session, uint64_t batch_bytes,
+             SharedMemory::Access access = SharedMemory::Access::kRead);
 
   const SlotAddress& address() const { return address_; }
+  // All slots.
+  std::span<const uint8_t> memory() const { return {memory_.data(), memory_.bytes()}; }
   // The batch of the request; valid until the learner releases the request. Throws Error if the
   // slot contains another batch.
   uint8_t* Batch(uint32_t slot, uint64_t request) const;

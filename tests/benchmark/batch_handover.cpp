@@ -110,7 +110,7 @@ uint64_t LookAt(const BatchView& batch, uint64_t bytes) {
 // CPU seconds from the first counted batch to the last.
 double Learn(const RunConfig& run, const ClusterAddress& address, int batches) {
   dds::Bus bus(address, run.config.transport, dds::Role::kLearner);
-  const auto feed = learner::MakeFeed("", run, kLearnerSession, 0, bus);
+  const auto feed = learner::MakeFeed("", run, kLearnerSession, 0, bus, {});
   const uint64_t bytes = BatchSchemaOf(run).total_bytes();
   double start = 0;
   for (int i = 0; i < kWarmUp + batches; ++i) {

@@ -145,24 +145,19 @@ double Difference(const std::vector<Numbers>& a, const std::vector<Numbers>& b) 
 }
 
 void Try(Device* device, const std::string& name, Type type, const Operands& operands,
-         const MakeCommand& make, const Show& show) {
-  HostDevice host;
-  const auto expected = ResultsOn(&host, operands, make, /*recorded=*/false);
-  const double direct = Difference(ResultsOn(device, operands, make, false), expected);
-  const double recorded = Difference(ResultsOn(device, operands, make, true), expected);
-  const double limit = type == Type::kF32 ? kF32Limit : kBf16Limit;
-  const double worst = std::max(direct, recorded);
-  show({.trial = name,
-        .figure = worst,
-        .unit = "relative error",
-        .limit = limit,
-        .passed = worst <= limit});
+         const MakeCommand& make, const Trials& trials) {
+  trials.TryError(name, "relative error", type == Type::kF32 ? kF32Limit : kBf16Limit, [&] {
+    HostDevice host;
+    const auto expected = ResultsOn(&host, operands, make, /*recorded=*/false);
+    const double direct = Difference(ResultsOn(device, operands, make, false), expected);
+    return std::max(direct, Difference(ResultsOn(device, operands, make, true), expected));
+  });
 }
 
 std::string TypeName(Type type) { return type == Type::kF32 ? "f32" : "bf16"; }
 
 // Rows of the matrices are `gap` numbers longer than they need.
-void TryProduct(Device* device, Product shape, int32_t gap, const Show& show) {
+void TryProduct(Device* device, Product shape, int32_t gap, const Trials& trials) {
   const int32_t a_columns = shape.a_transposed ? shape.rows : shape.depth;
   const int32_t b_columns = shape.b_transposed ? shape.depth : shape.columns;
   const int32_t a_rows = shape.a_transposed ? shape.depth : shape.rows;
@@ -195,10 +190,10 @@ void TryProduct(Device* device, Product shape, int32_t gap, const Show& show) {
         product.d = results[0];
         return product;
       },
-      show);
+      trials);
 }
 
-void TryProducts(Device* device, bool quick, const Show& show) {
+void TryProducts(Device* device, bool quick, const Trials& trials) {
   const std::vector<std::array<int32_t, 3>> shapes =
       quick ? std::vector<std::array<int32_t, 3>>{{6, 10, 14}}
             : std::vector<std::array<int32_t, 3>>{
@@ -213,7 +208,7 @@ void TryProducts(Device* device, bool quick, const Show& show) {
                     .input = input,
                     .a_transposed = transposed == 1,
                     .b_transposed = transposed == 2},
-                   0, show);
+                   0, trials);
       }
       TryProduct(device,
                  {.rows = rows,
@@ -223,7 +218,7 @@ void TryProducts(Device* device, bool quick, const Show& show) {
                   .output = input,
                   .relu = true,
                   .count = 2},
-                 8, show);
+                 8, trials);
     }
   }
 }
@@ -244,7 +239,7 @@ ConvolutionShape Shape(Type type, int32_t batch, int32_t size, int32_t channels,
           .output_width = output};
 }
 
-void TryConvolution(Device* device, const ConvolutionShape& s, const Show& show) {
+void TryConvolution(Device* device, const ConvolutionShape& s, const Trials& trials) {
   const int64_t inputs = int64_t(s.batch) * s.height * s.width * s.channels;
   const int64_t outputs = int64_t(s.batch) * s.output_height * s.output_width * s.filters;
   const int64_t weights = int64_t(s.filters) * s.kernel * s.kernel * s.channels;
@@ -264,14 +259,14 @@ void TryConvolution(Device* device, const ConvolutionShape& s, const Show& show)
                                   .relu = true,
                                   .y = out[0]};
       },
-      show);
+      trials);
   Try(
       device, "gradient by input " + name, s.type,
       {.inputs = {dy, weight}, .results = {{s.type, inputs}}},
       [&](const auto& in, const auto& out) {
         return ConvolutionData{.shape = s, .dy = in[0], .weight = in[1], .dx = out[0]};
       },
-      show);
+      trials);
   Try(
       device, "gradient by weights " + name, s.type,
       {.inputs = {x, dy}, .results = {{Type::kF32, weights}}},
@@ -279,20 +274,20 @@ void TryConvolution(Device* device, const ConvolutionShape& s, const Show& show)
         return ConvolutionWeights{
             .shape = s, .x = in[0], .dy = in[1], .weight_gradient = static_cast<float*>(out[0])};
       },
-      show);
+      trials);
 }
 
 }  // namespace
 
-void TryCommands(Device* device, bool quick, const Show& show) {
-  TryProducts(device, quick, show);
+void TryCommands(Device* device, bool quick, const Trials& trials) {
+  TryProducts(device, quick, trials);
   for (const Type type : {Type::kF32, Type::kBf16}) {
-    TryConvolution(device, Shape(type, 3, 9, 8, 16, 3, 2, 0), show);
-    TryConvolution(device, Shape(type, 2, 8, 8, 8, 3, 1, 1), show);
+    TryConvolution(device, Shape(type, 3, 9, 8, 16, 3, 2, 0), trials);
+    TryConvolution(device, Shape(type, 2, 8, 8, 8, 3, 1, 1), trials);
     if (quick) continue;
-    TryConvolution(device, Shape(type, 16, 42, 8, 32, 3, 2, 0), show);  // compact
-    TryConvolution(device, Shape(type, 8, 41, 32, 32, 3, 1, 0), show);  // drq
-    TryConvolution(device, Shape(type, 8, 84, 8, 32, 8, 4, 0), show);   // nature
+    TryConvolution(device, Shape(type, 16, 42, 8, 32, 3, 2, 0), trials);  // compact
+    TryConvolution(device, Shape(type, 8, 41, 32, 32, 3, 1, 0), trials);  // drq
+    TryConvolution(device, Shape(type, 8, 84, 8, 32, 8, 4, 0), trials);   // nature
   }
 }
 

@@ -4,10 +4,12 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "common/base/build_info.h"
 #include "common/base/command_line.h"
@@ -23,6 +25,7 @@ namespace {
 
 using shoal::learner::device::Device;
 using shoal::trial::Row;
+using shoal::trial::Trials;
 
 std::unique_ptr<Device> OpenDevice(const std::string& name) {
   if (name == "host") return std::make_unique<shoal::learner::device::HostDevice>();
@@ -33,12 +36,17 @@ int Run(int argc, char** argv) {
   std::string name = "cuda";
   bool quick = false;
   double seconds = 3;
+  std::string only;
+  std::vector<std::string> parts{"commands", "updates", "rates"};
   CLI::App app("Compares a GPU with the host and measures rates of updates.", "shoal-gpu-trial");
   shoal::AddVersion(&app);
   app.add_option("--device", name, "cuda, or host: the device that tests use")
       ->check(CLI::IsMember({"cuda", "host"}));
   app.add_flag("--quick", quick, "small shapes and few updates");
   app.add_option("--seconds", seconds, "of each rate")->check(CLI::Range(0.1, 60.0));
+  app.add_option("--part", parts, "commands, updates and rates")
+      ->check(CLI::IsMember({"commands", "updates", "rates"}));
+  app.add_option("--only", only, "trials whose name contains this text");
   if (const auto exit_code = shoal::ParseCommandLine(&app, argc, argv)) return *exit_code;
   shoal::nn::SetThreads(1);
   shoal::learner::EnsurePassiveOpenMp(1, argv);
@@ -49,17 +57,21 @@ int Run(int argc, char** argv) {
   const auto show = [&](const Row& row) {
     std::cerr << fmt::format("{:<4}  {:<58} {:>12.4g} {}\n", row.passed ? "ok" : "FAIL", row.trial,
                              row.figure, row.unit);
+    if (!row.fault.empty()) std::cerr << "      " << row.fault << "\n";
     rows.push_back({{"trial", row.trial},
                     {"figure", row.figure},
                     {"unit", row.unit},
                     {"limit", shoal::OrNull(row.limit)},
                     {"passed", row.passed}});
+    if (!row.fault.empty()) rows.back()["fault"] = row.fault;
     passed = passed && row.passed;
   };
   std::cerr << fmt::format("{} (driver {})\n", device->info().name, device->info().driver);
-  shoal::trial::TryCommands(device.get(), quick, show);
-  shoal::trial::TryUpdates(device.get(), quick, show);
-  shoal::trial::TimeUpdates(device.get(), quick, seconds, show);
+  const Trials trials(only, show);
+  const auto has = [&](const char* part) { return std::ranges::count(parts, part) > 0; };
+  if (has("commands")) shoal::trial::TryCommands(device.get(), quick, trials);
+  if (has("updates")) shoal::trial::TryUpdates(device.get(), quick, trials);
+  if (has("rates")) shoal::trial::TimeUpdates(device.get(), quick, seconds, trials);
   const nlohmann::ordered_json object{{"schema", "shoal-gpu-trial-1"},
                                       {"commit", shoal::BuildCommit()},
                                       {"device", device->info().name},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trials of a device: rows of a table, and the trials that make them.
+// Trials of a device: each makes a row of a table.
 #pragma once
 
 #include <functional>
@@ -16,21 +16,43 @@ struct Row {
   std::string unit;               // "relative error" | "updates/s"
   std::optional<double> limit{};  // an error must be at most this number, a rate at least
   bool passed = true;
+  std::string fault{};  // the error that ended the trial; empty if there was none
 };
 
-using Show = std::function<void(const Row&)>;
+class Trials {
+ public:
+  using Show = std::function<void(const Row&)>;
+
+  // Makes only the trials whose name contains `only`.
+  Trials(std::string only, Show show);
+
+  // An error of at most `limit`.
+  void TryError(const std::string& name, const std::string& unit, double limit,
+                const std::function<double()>& error) const;
+  // A rate of at least `limit`; null: any rate.
+  void TryRate(const std::string& name, const std::string& unit, std::optional<double> limit,
+               const std::function<double()>& rate) const;
+
+ private:
+  // A trial that throws Error has not passed; the next trial follows.
+  void Try(Row row, const std::function<double()>& figure, bool at_most) const;
+
+  const std::string only_;
+  const Show show_;
+};
 
 // Runs products and convolutions of the networks' shapes on the device and on the host's device,
 // with equal inputs and poisoned results. A row for each: the largest difference, divided by the
 // largest number of the host's result. `quick`: small shapes only.
-void TryCommands(learner::device::Device* device, bool quick, const Show& show);
+void TryCommands(learner::device::Device* device, bool quick, const Trials& trials);
 
 // Makes 200 updates of each algorithm and encoder (of PPO: 40 minibatches from vectors, 4 from
 // pixels) on the device and on the CPU with equal batches and draws, and shows the relative
 // difference of the parameters. `quick`: few updates, small networks.
-void TryUpdates(learner::device::Device* device, bool quick, const Show& show);
+void TryUpdates(learner::device::Device* device, bool quick, const Trials& trials);
 
-// Rates of SAC's update on the device, with batches in host memory. `seconds` for each row.
-void TimeUpdates(learner::device::Device* device, bool quick, double seconds, const Show& show);
+// Rates of SAC's update on the device, with batches in host memory, and of the copies of batches.
+// `seconds` for each row.
+void TimeUpdates(learner::device::Device* device, bool quick, double seconds, const Trials& trials);
 
 }  // namespace shoal::trial

@@ -21,5 +21,6 @@ fi
 # Films write text: the fonts that the bundle carries, unless the user has chosen others.
 fonts=$root/share/fontconfig/fonts.conf
 if [ -f "$fonts" ]; then export FONTCONFIG_FILE="${FONTCONFIG_FILE:-$fonts}"; fi
-exec "$loader" --inhibit-cache --library-path "$root/lib" --argv0 "$root/bin/$name" \
+# LD_LIBRARY_PATH may name the folders of CUDA's libraries, which the bundle does not have.
+exec "$loader" --inhibit-cache --library-path "$root/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}" --argv0 "$root/bin/$name" \
   "$root/libexec/$name" "$@"

@@ -77,6 +77,12 @@ for path in "${opened[@]}"; do
   install -m 644 "$(readlink -f "$path")" "$root/lib/$(basename "$path")"
   carried+=("$path")
 done
+# An NVIDIA driver of the system needs them, and those of another C library would not fit.
+for soname in libdl.so.2 libpthread.so.0 librt.so.1; do
+  path=$(ldconfig -p | awk -v name="$soname" '$1 == name && /x86-64/ {print $NF; exit}')
+  install -m 644 "$(readlink -f "$path")" "$root/lib/$soname"
+  carried+=("$path")
+done
 loader=/lib64/ld-linux-x86-64.so.2
 install -m 755 "$(readlink -f "$loader")" "$root/lib/ld-linux-x86-64.so.2"
 carried+=("$loader")

@@ -154,15 +154,10 @@ void CudaDevice::FreeHost(void* memory) {
 }
 
 bool CudaDevice::RegisterHost(const void* memory, int64_t bytes) {
-  // Batches are mapped for reading only, which not every system can pin.
-  for (const unsigned flags :
-       {unsigned{cudaHostRegisterDefault}, unsigned{cudaHostRegisterReadOnly}}) {
-    const cudaError_t status =
-        cudaHostRegister(const_cast<void*>(memory), static_cast<size_t>(bytes), flags);
-    if (status == cudaSuccess) return true;
-    cudaGetLastError();
-  }
-  return false;
+  const cudaError_t status = cudaHostRegister(const_cast<void*>(memory), static_cast<size_t>(bytes),
+                                              cudaHostRegisterDefault);
+  cudaGetLastError();
+  return status == cudaSuccess;
 }
 
 void CudaDevice::UnregisterHost(const void* memory) {
