@@ -180,6 +180,9 @@ std::unique_ptr<CudaProducts::Plan> CudaProducts::Choose(const Product& p, bool 
   if (status == CUBLAS_STATUS_NOT_SUPPORTED || (status == CUBLAS_STATUS_SUCCESS && results == 0)) {
     return nullptr;
   }
+  // cuBLASLt reports some of the epilogues that it does not support as invalid values: an f32 bias
+  // of a bf16 result, for example.
+  if (fused && status == CUBLAS_STATUS_INVALID_VALUE) return nullptr;
   Require(status, kWhat);
   plan->algorithm = found.algo;
   return plan;

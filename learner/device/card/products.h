@@ -39,7 +39,7 @@ class CudaProducts {
 
   static Key KeyOf(const Product& product);
   Plan& PlanOf(const Product& product);
-  // Returns null if there is no algorithm.
+  // Returns null if there is no algorithm, or if cuBLASLt refuses the product when it is `fused`.
   std::unique_ptr<Plan> Choose(const Product& product, bool fused) const;
 
   cublasLtHandle_t handle_ = nullptr;
