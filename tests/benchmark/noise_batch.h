@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <type_traits>
 
@@ -29,8 +30,9 @@ inline ObservationSpec PixelSpec(int channels = 6) {
 struct NoiseBatch {
   NoiseBatch(const Config& config, const ObservationSpec& spec)
       : NoiseBatch(spec, {.batch = config.learner.batch}) {}
-  NoiseBatch(const ObservationSpec& spec, const BatchOptions& options) : schema(spec, options) {
-    Random random(1);
+  NoiseBatch(const ObservationSpec& spec, const BatchOptions& options, uint64_t seed = 1)
+      : schema(spec, options) {
+    Random random(seed);
     const auto fill = [&](auto& array, double low, double high) {
       for (auto& x : array) {
         x = static_cast<std::remove_reference_t<decltype(x)>>(random.Uniform(low, high));

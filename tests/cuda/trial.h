@@ -46,10 +46,16 @@ class Trials {
 // largest number of the host's result. `quick`: small shapes only.
 void TryCommands(learner::device::Device* device, bool quick, const Trials& trials);
 
-// Makes 200 updates of each algorithm and encoder (of PPO: 40 minibatches from vectors, 4 from
-// pixels) on the device and on the CPU with equal batches and draws, and shows the relative
-// difference of the parameters. `quick`: few updates, small networks.
-void TryUpdates(learner::device::Device* device, bool quick, const Trials& trials);
+struct UpdateTrials {
+  learner::device::Device* device = nullptr;  // null: the CPU is compared with itself
+  bool quick = false;                         // fewer updates of fewer networks
+  int stretch = 0;                            // updates in a row; 0: those of the limits
+};
+
+// Compares updates of each algorithm and encoder on the device with those of the CPU
+// (agent_comparison.h): 200 updates, of PPO 10 rollouts. Three rows for each: figures of the first
+// update, and the median and the largest difference of the changes of parameters.
+void TryUpdates(const UpdateTrials& what, const Trials& trials);
 
 // Rates of SAC's update on the device, with batches in host memory, and of the copies of batches.
 // `seconds` for each row.

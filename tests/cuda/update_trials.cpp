@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
-#include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <cstring>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "common/base/clock.h"
 #include "common/base/error.h"
-#include "learner/agent/algorithms.h"
 #include "learner/device/device_agent.h"
 #include "tests/benchmark/noise_batch.h"
+#include "tests/cuda/agent_comparison.h"
 #include "tests/cuda/trial.h"
 
 namespace shoal::trial {
@@ -25,119 +18,40 @@ namespace {
 using learner::device::Device;
 using learner::device::MakeDeviceAgent;
 
-constexpr double kF32Drift = 1e-3, kBf16Drift = 2e-2, kPpoDrift = 5e-3;
-
-struct Setting {
-  std::string algorithm, encoder;  // encoder "" = vectors only
-  nn::Precision precision;
+// Limits of an agent's differences. docs/notes/rounding-of-updates.md says how large rounding makes
+// them. The median finds faults of each update, and the largest difference finds grave faults of a
+// few updates.
+struct Limits {
+  double figures, median, largest;
 };
+constexpr Limits kVectors{1e-4, 1e-3, 0.5};
+constexpr Limits kPixels{1e-4, 3e-3, 0.5};
+// The figures of a rollout are means of several updates.
+constexpr Limits kRollouts{5e-3, 3e-3, 0.5};
+// Many gradients of these deep networks are nearly 0, and Adam's first steps enlarge them.
+constexpr Limits kDeep{1e-4, 5e-2, 0.5};
+constexpr Limits kBf16{2e-2, 0.1, 0.8};
 
-bool OnPolicy(const Setting& setting) { return setting.algorithm == "ppo"; }
-
-// An update on policy has as many minibatches as kEpochs passes over kMinibatches of them.
-constexpr int kEpochs = 2, kMinibatches = 2;
-BatchOptions OptionsOf(const Setting& setting, int batch) {
-  if (!OnPolicy(setting)) return {.batch = batch};
-  return {.batch = kMinibatches * batch, .rollout = true};
-}
-
-Config ConfigOf(const Setting& setting, int batch) {
-  Config config;
-  config.learner.algorithm = setting.algorithm;
-  config.learner.batch = batch;
-  config.ppo.epochs = kEpochs;
-  config.observation.pixels = !setting.encoder.empty();
-  if (!setting.encoder.empty()) config.network.encoder = setting.encoder;
-  return config;
-}
-
-ObservationSpec SpecOf(const Setting& setting) {
-  ObservationSpec spec = bench::PixelSpec();
-  spec.drawn_actions = OnPolicy(setting);
-  if (!setting.encoder.empty()) return spec;
-  spec.cameras.clear();
-  spec.channels = 0;
-  spec.blocks = {{"state", 10}};
-  return spec;
-}
-
-float FloatAt(const nn::NamedTensor& tensor, size_t byte) {
-  float value;
-  std::memcpy(&value, &tensor.data.at(byte), sizeof(value));
-  return value;
-}
-
-// The bias before a spatial softmax changes no point. Its gradient is a rounding error, which
-// Adam's steps enlarge.
-constexpr std::string_view kWithoutEffect = "encoder.conv1.bias";
-
-// The tensor whose values differ most, by the Euclidean norm of the difference relative to that of
-// the tensor. Leaves out `without_effect`.
-double ParameterDifference(const nn::TensorMap& a, const nn::TensorMap& b,
-                           std::string_view without_effect) {
-  double worst = 0;
-  for (const auto& [name, tensor] : a) {
-    if (name == without_effect) continue;
-    const auto other = b.find(name);
-    if (other == b.end()) return std::numeric_limits<double>::infinity();
-    double difference = 0, norm = 0;
-    for (size_t i = 0; i + sizeof(float) <= tensor.data.size(); i += sizeof(float)) {
-      const double x = FloatAt(tensor, i), y = FloatAt(other->second, i);
-      difference += (x - y) * (x - y);
-      norm += y * y;
-    }
-    worst = std::max(worst, std::sqrt(difference) / std::max(std::sqrt(norm), 1e-6));
-    if (!std::isfinite(difference)) return std::numeric_limits<double>::infinity();
-  }
-  return worst;
-}
-
-void TryUpdatesOf(Device* device, const Setting& setting, int updates, int batch,
-                  const Trials& trials) {
-  const bool f32 = setting.precision == nn::Precision::kF32;
-  const double limit = OnPolicy(setting) ? kPpoDrift : f32 ? kF32Drift : kBf16Drift;
-  const std::string name =
-      fmt::format("{} {} of {}, {}, {}", updates, OnPolicy(setting) ? "minibatches" : "updates",
-                  setting.algorithm, setting.encoder.empty() ? "vectors" : setting.encoder,
-                  nn::ToString(setting.precision));
-  trials.TryError(name, "relative difference", limit, [&] {
-    const Config config = ConfigOf(setting, batch);
-    const ObservationSpec spec = SpecOf(setting);
-    const bench::NoiseBatch noise(spec, OptionsOf(setting, batch));
-    const auto ours = MakeDeviceAgent(config, spec, setting.precision, device);
-    const auto theirs = learner::MakeAgent(config, spec, setting.precision);
-    const int steps = OnPolicy(setting) ? kEpochs * kMinibatches : 1;  // of an update
-    for (int i = 0; i < updates; i += steps) {
-      ours->Submit(noise.batch, [](learner::UpdateStage) {});
-      theirs->Update(noise.batch);
-    }
-    ours->Finish();
-    return ParameterDifference(ours->PolicyTensors(), theirs->PolicyTensors(),
-                               setting.encoder == "spatial_softmax" ? kWithoutEffect : "");
-  });
-}
-
-// Losses and norms of gradients of one update, for a network whose later updates differ by
-// rounding: each ReLU that rounding switches changes a gradient, and Adam's first steps have the
-// size of the rate whatever the size of a gradient.
-void TryFirstUpdateOf(Device* device, const Setting& setting, int batch, const Trials& trials) {
-  const std::string name = fmt::format("first figures of {}, {}, {}", setting.algorithm,
-                                       setting.encoder, nn::ToString(setting.precision));
-  trials.TryError(name, "relative difference", kF32Drift, [&] {
-    const Config config = ConfigOf(setting, batch);
-    const ObservationSpec spec = SpecOf(setting);
-    const bench::NoiseBatch noise(config, spec);
-    const auto outcome =
-        MakeDeviceAgent(config, spec, setting.precision, device)->Update(noise.batch);
-    const auto expected = learner::MakeAgent(config, spec, setting.precision)->Update(noise.batch);
-    const auto &some = outcome.figures.entries(), &other = expected.figures.entries();
-    double worst = some.size() == other.size() ? 0 : std::numeric_limits<double>::infinity();
-    for (size_t i = 0; i < std::min(some.size(), other.size()); ++i) {
-      const double difference = std::abs(some[i].value - other[i].value);
-      worst = std::max(worst, difference / (1 + std::abs(other[i].value)));
-    }
-    return worst;
-  });
+void TryUpdatesOf(Device* device, const Setting& setting, const Schedule& schedule,
+                  const Limits& limits, const Trials& trials) {
+  std::optional<Differences> made;
+  const auto differences = [&]() -> const Differences& {
+    if (!made) made = CompareUpdates(device, setting, schedule);
+    return *made;
+  };
+  const std::string name = Describe(setting);
+  const bool rollouts = setting.algorithm == "ppo";
+  const std::string changes =
+      fmt::format("{}: change in {} {}{}", name, schedule.stretch, rollouts ? "rollout" : "update",
+                  schedule.stretch == 1 ? "" : "s");
+  const int stretches = (schedule.updates + schedule.every - 1) / schedule.every;
+  const char* const unit = "relative difference";
+  trials.TryError(name + ": figures of the first update", unit, limits.figures,
+                  [&] { return differences().figures; });
+  trials.TryError(fmt::format("{}, median of {}", changes, stretches), unit, limits.median,
+                  [&] { return differences().MedianChange(); });
+  trials.TryError(fmt::format("{}, largest of {}", changes, stretches), unit, limits.largest,
+                  [&] { return differences().LargestChange(); });
 }
 
 // Calls `step` for this time, then `finish`; returns calls per second.
@@ -223,30 +137,35 @@ void TimeCopies(Device* device, bool pins, double seconds, const Trials& trials)
 
 }  // namespace
 
-void TryUpdates(Device* device, bool quick, const Trials& trials) {
-  if (quick) {
-    TryUpdatesOf(device, {"sac", "", nn::Precision::kF32}, 5, 8, trials);
-    TryUpdatesOf(device, {"ppo", "", nn::Precision::kF32}, kEpochs * kMinibatches, 8, trials);
+void TryUpdates(const UpdateTrials& what, const Trials& trials) {
+  constexpr auto kSingle = nn::Precision::kF32;
+  const auto make = [&](const Setting& setting, Schedule schedule, const Limits& limits) {
+    if (what.stretch > 0) schedule.every = schedule.stretch = what.stretch;
+    TryUpdatesOf(what.device, setting, schedule, limits, trials);
+  };
+  if (what.quick) {
+    for (const char* algorithm : {"sac", "td3", "ddpg"}) {
+      make({algorithm, "", kSingle}, {40, 10, 5, 8}, kVectors);
+    }
+    make({"sac", "compact", kSingle}, {6, 2, 2, 2}, kPixels);
+    make({"ppo", "", kSingle}, {3, 1, 1, 8}, kRollouts);
     return;
   }
   for (const char* algorithm : {"sac", "td3", "ddpg"}) {
-    for (const char* encoder : {"", "compact", "drq", "nature", "spatial_softmax"}) {
-      TryUpdatesOf(device, {algorithm, encoder, nn::Precision::kF32}, 200, 16, trials);
+    make({algorithm, "", kSingle}, {200, 40, 40, 16}, kVectors);
+    for (const char* encoder : {"compact", "drq", "nature", "spatial_softmax"}) {
+      make({algorithm, encoder, kSingle}, {200, 20, 5, 16}, kPixels);
     }
   }
-  // The ratios of PPO change with each step, and a ReLU that rounding switches in one of the
-  // engines changes their gradients by a part in a thousand. Later minibatches enlarge the
-  // difference.
   for (const char* encoder : {"", "compact", "drq", "nature", "spatial_softmax"}) {
-    const int minibatches = *encoder == '\0' ? 40 : kEpochs * kMinibatches;
-    TryUpdatesOf(device, {"ppo", encoder, nn::Precision::kF32}, minibatches, 16, trials);
+    make({"ppo", encoder, kSingle}, {10, 1, 1, 16}, kRollouts);
   }
   // The CPU takes up to half a second for an update of these.
-  TryUpdatesOf(device, {"sac", "alexnet", nn::Precision::kF32}, 5, 16, trials);
-  TryFirstUpdateOf(device, {"td3", "resnet18", nn::Precision::kF32}, 16, trials);
+  make({"sac", "alexnet", kSingle}, {10, 2, 2, 16}, kDeep);
+  make({"td3", "resnet18", kSingle}, {6, 2, 2, 16}, kDeep);
   // The CPU's engine needs a CPU with bf16.
   if (nn::ChoosePrecision("auto", /*pixels=*/true) == nn::Precision::kBf16) {
-    TryUpdatesOf(device, {"sac", "compact", nn::Precision::kBf16}, 200, 16, trials);
+    make({"sac", "compact", nn::Precision::kBf16}, {200, 20, 5, 16}, kBf16);
   }
 }
 
