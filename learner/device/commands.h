@@ -104,12 +104,13 @@ struct ConvolutionData {
   bool operator==(const ConvolutionData&) const = default;
 };
 
-// dL/dweight, f32, from x and dL/dy.
+// dL/dweight and dL/dbias, f32, from x and dL/dy.
 struct ConvolutionWeights {
   ConvolutionShape shape;
   const void* x = nullptr;
   const void* dy = nullptr;
   float* weight_gradient = nullptr;
+  float* bias_gradient = nullptr;  // (filters), or null
 
   bool operator==(const ConvolutionWeights&) const = default;
 };

@@ -197,12 +197,16 @@ void ComputeData(const ConvolutionData& convolution) {
 
 void ComputeWeights(const ConvolutionWeights& convolution) {
   const ConvolutionShape& shape = convolution.shape;
-  Matrix weights(shape.filters, PatchOf(shape));
+  Matrix weights(shape.filters, PatchOf(shape)), bias(1, shape.filters);
   for (int64_t b = 0; b < shape.batch; ++b) {
-    AddProduct(Transposed(OutputGradientOf(shape, convolution.dy, b)),
-               Patches(shape, convolution.x, b), &weights);
+    const Matrix dy = OutputGradientOf(shape, convolution.dy, b);
+    AddProduct(Transposed(dy), Patches(shape, convolution.x, b), &weights);
+    for (int64_t i = 0; i < dy.rows; ++i) AddScaledRow(1, dy.row(i), dy.columns, bias.row(0));
   }
   std::ranges::copy(weights.values, convolution.weight_gradient);
+  if (convolution.bias_gradient != nullptr) {
+    std::ranges::copy(bias.values, convolution.bias_gradient);
+  }
 }
 
 }  // namespace shoal::learner::device

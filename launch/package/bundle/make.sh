@@ -29,6 +29,12 @@ libraries_of() {
   LD_LIBRARY_PATH=$work/left_out ldd "$@" | awk '$2 == "=>" && $3 ~ /^\// {print $1, $3}' | sort -u
 }
 
+# The path of a library of the system. It reads the whole list: ldconfig would end with an error if
+# nobody read its output to the end.
+system_library() {
+  ldconfig -p | awk -v name="$1" '$1 == name && /x86-64/ && path == "" {path = $NF} END {print path}'
+}
+
 # left_out LINE FUNCTIONS USERS SONAME...: libraries whose functions (of the pattern FUNCTIONS, as far
 # as USERS, the paths of an array, use them) end the program with LINE (left_out.c).
 left_out() {
@@ -63,7 +69,7 @@ fi
 
 opened=()
 if ! $slim; then
-  osmesa=$(ldconfig -p | awk '/libOSMesa\.so\.8 / {print $NF; exit}')
+  osmesa=$(system_library libOSMesa.so.8)
   [[ -n $osmesa ]] || { echo "bundle: libOSMesa.so.8 is not installed (libosmesa6)" >&2; exit 1; }
   opened+=("$osmesa")
 fi
@@ -79,7 +85,7 @@ for path in "${opened[@]}"; do
 done
 # An NVIDIA driver of the system needs them, and those of another C library would not fit.
 for soname in libdl.so.2 libpthread.so.0 librt.so.1; do
-  path=$(ldconfig -p | awk -v name="$soname" '$1 == name && /x86-64/ {print $NF; exit}')
+  path=$(system_library "$soname")
   install -m 644 "$(readlink -f "$path")" "$root/lib/$soname"
   carried+=("$path")
 done

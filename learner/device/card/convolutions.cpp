@@ -8,6 +8,7 @@
 
 #include "learner/device/card/cuda_error.h"
 #include "learner/device/card/launches.h"
+#include "learner/device/card/weight_kernels.h"
 
 namespace shoal::learner::device {
 namespace {
@@ -202,7 +203,38 @@ kernels::InPlace Write(Type type, void* memory) {
                              : kernels::InPlace{.f32 = static_cast<float*>(memory)};
 }
 
+// The shapes for which our kernels are faster than cuDNN's engines with a fixed order of sums
+// (docs/notes/learner-on-a-gpu.md).
+bool ByForwardTiles(const ConvolutionShape& shape) {
+  constexpr int32_t kMostChannels = 32, kMostFilters = 64, kLargestKernel = 8;
+  return shape.type == Type::kBf16 && shape.channels <= kMostChannels &&
+         shape.filters <= kMostFilters && shape.kernel <= kLargestKernel &&
+         kernels::ConvolveForwardByTiles::StripsOf(KernelShape(shape)).rows > 0;
+}
+bool ByWeightTiles(const ConvolutionShape& shape) {
+  constexpr int kMostGroups = 8;
+  using Tiles = kernels::ConvolveWeightsByTiles;
+  return shape.type == Type::kBf16 && Tiles::GroupsOf(KernelShape(shape)) <= kMostGroups &&
+         Tiles::StripsOf(KernelShape(shape)).rows > 0;
+}
+
 void* After(void* memory, int64_t bytes) { return static_cast<std::byte*>(memory) + bytes; }
+
+// Sums of a bias's gradient over the pixels of dy.
+kernels::ActivationBackward BiasGradient(const ConvolutionWeights& command) {
+  return {.sums = {.rows = KernelShape(command.shape).pixels(), .columns = command.shape.filters},
+          .dy = Read(command.shape.type, command.dy),
+          .dbias = command.bias_gradient};
+}
+
+kernels::ConvolveWeightsByTiles ByTiles(const ConvolutionWeights& command) {
+  return {.strips = kernels::ConvolveWeightsByTiles::StripsOf(KernelShape(command.shape)),
+          .x = static_cast<const uint16_t*>(command.x),
+          .dy = static_cast<const uint16_t*>(command.dy),
+          .weight_gradient = command.weight_gradient,
+          .bias_gradient = command.bias_gradient,
+          .partials = nullptr};
+}
 
 }  // namespace
 
@@ -303,6 +335,7 @@ CudaConvolutions::Plan* CudaConvolutions::PlanOf(Kind kind, const ConvolutionSha
 }
 
 int64_t CudaConvolutions::Prepare(const ConvolutionForward& command) {
+  if (ByForwardTiles(command.shape)) return 0;
   const Plan* plan = PlanOf(Kind::kForward, command.shape);
   return plan == nullptr ? 0 : plan->workspace_bytes;
 }
@@ -314,11 +347,23 @@ int64_t CudaConvolutions::Prepare(const ConvolutionData& command) {
 
 CudaConvolutions::WeightsWorkspace CudaConvolutions::WorkspaceOf(
     const ConvolutionWeights& command) {
+  WeightsWorkspace parts;
+  if (ByWeightTiles(command.shape)) {
+    parts.sums = ByTiles(command).PartialsSize() * int64_t{sizeof(float)};
+    return parts;
+  }
   const Plan* plan = PlanOf(Kind::kWeights, command.shape);
-  return {.plan = plan == nullptr ? 0 : Aligned(plan->workspace_bytes),
-          .narrow = plan != nullptr && plan->narrow
-                        ? Aligned(KernelShape(command.shape).weights() * int64_t{sizeof(uint16_t)})
-                        : 0};
+  if (plan == nullptr) return parts;
+  parts.plan = Aligned(plan->workspace_bytes);
+  if (plan->narrow) {
+    parts.narrow = Aligned(KernelShape(command.shape).weights() * int64_t{sizeof(uint16_t)});
+  }
+  if (command.bias_gradient != nullptr) {
+    const kernels::ColumnSums sums = BiasGradient(command).sums;
+    parts.sums = Aligned(sums.PartialsSize() * int64_t{sizeof(float)});
+    parts.counters = Aligned(sums.groups() * int64_t{sizeof(int32_t)});
+  }
+  return parts;
 }
 
 int64_t CudaConvolutions::Prepare(const ConvolutionWeights& command) {
@@ -327,6 +372,17 @@ int64_t CudaConvolutions::Prepare(const ConvolutionWeights& command) {
 
 void CudaConvolutions::Run(const ConvolutionForward& command, void* workspace) {
   const ConvolutionShape& s = command.shape;
+  if (ByForwardTiles(s)) {
+    Launch(kernels::ConvolveForwardByTiles{.strips = kernels::ConvolveForwardByTiles::StripsOf(
+                                               KernelShape(s)),
+                                           .x = static_cast<const uint16_t*>(command.x),
+                                           .weight = static_cast<const uint16_t*>(command.weight),
+                                           .bias = command.bias,
+                                           .relu = command.relu ? 1 : 0,
+                                           .y = static_cast<uint16_t*>(command.y)},
+           stream_);
+    return;
+  }
   const Plan* plan = PlanOf(Kind::kForward, s);
   if (plan == nullptr) {
     Launch(kernels::ConvolveForward{.shape = KernelShape(s),
@@ -340,12 +396,11 @@ void CudaConvolutions::Run(const ConvolutionForward& command, void* workspace) {
   }
   plan->Run(handle_, command.x, command.weight, command.y, workspace);
   if (command.bias == nullptr && !command.relu) return;
-  Launch(kernels::AddBias{.y = Write(s.type, command.y),
-                          .bias = command.bias,
-                          .relu = command.relu ? 1 : 0,
-                          .rows = static_cast<int32_t>(KernelShape(s).pixels()),
-                          .columns = s.filters,
-                          .stride = s.filters},
+  Launch(kernels::AddBiasToMap{.y = static_cast<uint16_t*>(command.y),
+                               .bias = command.bias,
+                               .relu = command.relu ? 1 : 0,
+                               .filters = s.filters,
+                               .size = KernelShape(s).outputs()},
          stream_);
 }
 
@@ -365,23 +420,56 @@ void CudaConvolutions::Run(const ConvolutionData& command, void* workspace) {
 
 void CudaConvolutions::Run(const ConvolutionWeights& command, void* workspace) {
   const ConvolutionShape& s = command.shape;
-  const kernels::MapShape shape = KernelShape(s);
-  const Plan* plan = PlanOf(Kind::kWeights, s);
-  if (plan == nullptr) {
-    Launch(kernels::ConvolveWeights{.shape = shape,
+  if (ByWeightTiles(s)) {
+    RunByTiles(command, workspace);
+  } else if (const Plan* plan = PlanOf(Kind::kWeights, s)) {
+    RunPlan(*plan, command, workspace);
+  } else {
+    Launch(kernels::ConvolveWeights{.shape = KernelShape(s),
                                     .x = Read(s.type, command.x),
                                     .dy = Read(s.type, command.dy),
-                                    .weight_gradient = command.weight_gradient},
+                                    .weight_gradient = command.weight_gradient,
+                                    .bias_gradient = command.bias_gradient},
            stream_);
-  } else if (plan->narrow) {
-    auto* narrow = static_cast<uint16_t*>(After(workspace, WorkspaceOf(command).plan));
-    plan->Run(handle_, command.x, narrow, command.dy, workspace);
-    Launch(
-        kernels::WidenToF32{.from = narrow, .to = command.weight_gradient, .size = shape.weights()},
-        stream_);
-  } else {
-    plan->Run(handle_, command.x, command.weight_gradient, command.dy, workspace);
   }
+}
+
+void CudaConvolutions::RunByTiles(const ConvolutionWeights& command, void* workspace) {
+  kernels::ConvolveWeightsByTiles tiles = ByTiles(command);
+  tiles.partials = static_cast<float*>(workspace);
+  Launch(tiles, stream_);
+  if (tiles.parts() == 1) return;
+  Launch(kernels::AddWeightParts{.partials = tiles.partials,
+                                 .parts = tiles.parts(),
+                                 .weights = tiles.shape().weights(),
+                                 .biases = tiles.shape().filters,
+                                 .weight_gradient = command.weight_gradient,
+                                 .bias_gradient = command.bias_gradient},
+         stream_);
+}
+
+void CudaConvolutions::RunPlan(const Plan& plan, const ConvolutionWeights& command,
+                               void* workspace) {
+  const WeightsWorkspace parts = WorkspaceOf(command);
+  if (plan.narrow) {
+    auto* narrow = static_cast<uint16_t*>(After(workspace, parts.plan));
+    plan.Run(handle_, command.x, narrow, command.dy, workspace);
+    Launch(kernels::WidenToF32{.from = narrow,
+                               .to = command.weight_gradient,
+                               .size = KernelShape(command.shape).weights()},
+           stream_);
+  } else {
+    plan.Run(handle_, command.x, command.weight_gradient, command.dy, workspace);
+  }
+  if (command.bias_gradient == nullptr) return;
+  kernels::ActivationBackward bias = BiasGradient(command);
+  void* const sums = After(workspace, parts.plan + parts.narrow);
+  void* const counters = After(sums, parts.sums);
+  bias.sums.partials = static_cast<float*>(sums);
+  bias.sums.finished = static_cast<int32_t*>(counters);
+  Require(cudaMemsetAsync(counters, 0, static_cast<size_t>(parts.counters), stream_),
+          "clearing memory");
+  Launch(bias, stream_);
 }
 
 }  // namespace shoal::learner::device

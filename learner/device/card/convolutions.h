@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Convolutions (commands.h) on a card: in bf16 by cuDNN's graph interface, in f32 by kernels of
-// map_kernels.h, because cuDNN might use TF32.
+// Convolutions (commands.h) on a card. In bf16, by cuDNN's graph interface, with bias and ReLU in
+// kernels of map_kernels.h; or, for the shapes for which they are faster, by kernels of
+// forward_kernels.h and weight_kernels.h. In f32, by kernels of map_kernels.h, because cuDNN might
+// use TF32.
 //
-// cuDNN computes the plain convolution; bias and ReLU are kernels. Only engines of
-// cuDNN with a fixed order of sums are used. If cuDNN has no engine for a shape, the slower kernel
-// of map_kernels.h computes it, and a line on stderr says so once.
+// Only engines of cuDNN with a fixed order of sums are used. If cuDNN has no engine for a shape,
+// the slower kernel of map_kernels.h computes it, and a line on stderr says so once.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -44,12 +45,15 @@ class CudaConvolutions {
   // The plan of cuDNN; null if it has none.
   Plan* PlanOf(Kind kind, const ConvolutionShape& shape);
   std::unique_ptr<Plan> Choose(Kind kind, const ConvolutionShape& shape) const;
-  // Parts of the workspace of ConvolutionWeights, in bytes: cuDNN's, and the gradient in bf16.
+  // Parts of the workspace of ConvolutionWeights, in bytes: cuDNN's, the gradient in bf16, parts of
+  // sums, and counters.
   struct WeightsWorkspace {
-    int64_t plan, narrow;
-    int64_t total() const { return plan + narrow; }
+    int64_t plan = 0, narrow = 0, sums = 0, counters = 0;
+    int64_t total() const { return plan + narrow + sums + counters; }
   };
   WeightsWorkspace WorkspaceOf(const ConvolutionWeights& command);
+  void RunByTiles(const ConvolutionWeights& command, void* workspace);
+  void RunPlan(const Plan& plan, const ConvolutionWeights& command, void* workspace);
 
   const cudaStream_t stream_;
   cudnnHandle_t handle_ = nullptr;

@@ -4,7 +4,9 @@
 
 #include <cuda_runtime_api.h>
 
+#include "learner/device/card/forward_kernels.h"
 #include "learner/device/card/map_kernels.h"
+#include "learner/device/card/weight_kernels.h"
 #include "learner/device/kernels/kernels.h"
 
 namespace shoal::learner::device {
@@ -16,9 +18,13 @@ void RequireLaunched(cudaError_t status);
 // Launches one kernel on the stream. Throws Error (kDevice).
 void Launch(const kernels::Kernel& kernel, cudaStream_t stream);
 void Launch(const kernels::AddBias& kernel, cudaStream_t stream);
+void Launch(const kernels::AddBiasToMap& kernel, cudaStream_t stream);
 void Launch(const kernels::WidenToF32& kernel, cudaStream_t stream);
 void Launch(const kernels::ConvolveForward& kernel, cudaStream_t stream);
+void Launch(const kernels::ConvolveForwardByTiles& kernel, cudaStream_t stream);
 void Launch(const kernels::ConvolveData& kernel, cudaStream_t stream);
 void Launch(const kernels::ConvolveWeights& kernel, cudaStream_t stream);
+void Launch(const kernels::ConvolveWeightsByTiles& kernel, cudaStream_t stream);
+void Launch(const kernels::AddWeightParts& kernel, cudaStream_t stream);
 
 }  // namespace shoal::learner::device

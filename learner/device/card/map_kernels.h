@@ -84,6 +84,34 @@ struct WidenToF32 {
   }
 };
 
+// AddBias for a map (pixels, filters) in bf16, eight numbers for each thread. filters: a multiple
+// of 8.
+struct AddBiasToMap {
+  static constexpr int kThreads = kElementThreads;
+  using Shared = NoShared;
+
+  uint16_t* y = nullptr;
+  const float* bias = nullptr;  // null: none
+  int32_t relu = 0, filters = 0;
+  int64_t size = 0;
+
+  int blocks() const { return BlocksForEights(size); }
+
+  template <class Block>
+  SHOAL_KERNEL void Run(Block& block, Shared&) const {
+    ForEights(block, size, [&](int64_t first) {
+      const int column = int(first % filters);
+      Eight eight = ReadEight(y + first);
+      for (int k = 0; k < 8; ++k) {
+        float value = FromBf16(eight.numbers[k]);
+        if (bias != nullptr) value += bias[column + k];
+        eight.numbers[k] = ToBf16(relu != 0 && value < 0 ? 0 : value);
+      }
+      WriteEight(eight, y + first);
+    });
+  }
+};
+
 // ConvolutionForward, one output for each thread.
 struct ConvolveForward {
   static constexpr int kThreads = kElementThreads;
@@ -167,7 +195,7 @@ struct ConvolveData {
   }
 };
 
-// ConvolutionWeights, one weight for each block.
+// ConvolutionWeights, one weight or bias for each block.
 struct ConvolveWeights {
   static constexpr int kThreads = 256;
   using Sum = Sums<1, float>;
@@ -176,12 +204,16 @@ struct ConvolveWeights {
   MapShape shape{};
   Source x, dy;
   float* weight_gradient = nullptr;
+  float* bias_gradient = nullptr;  // null: none
 
-  int blocks() const { return int(shape.weights()); }
+  int blocks() const {
+    return int(shape.weights() + (bias_gradient != nullptr ? shape.filters : 0));
+  }
 
   template <class Block>
   SHOAL_KERNEL void Run(Block& block, Shared& shared) const {
     const int64_t index = block.index();
+    if (index >= shape.weights()) return AddBiasGradient(block, shared, index - shape.weights());
     const int c = int(index % shape.channels);
     const int v = int(index / shape.channels % shape.kernel);
     const int u = int(index / shape.channels / shape.kernel % shape.kernel);
@@ -202,6 +234,22 @@ struct ConvolveWeights {
     const Sum total = Combine(block, shared);
     block.Threads([&](int thread) {
       if (thread == 0) weight_gradient[index] = total[0];
+    });
+  }
+
+ private:
+  template <class Block>
+  SHOAL_KERNEL void AddBiasGradient(Block& block, Shared& shared, int64_t n) const {
+    block.Threads([&](int thread) {
+      Sum sum = Sum::Zero();
+      for (int64_t pixel = thread; pixel < shape.pixels(); pixel += kThreads) {
+        sum.values[0] += dy[pixel * shape.filters + n];
+      }
+      shared.of_thread[thread] = sum;
+    });
+    const Sum total = Combine(block, shared);
+    block.Threads([&](int thread) {
+      if (thread == 0) bias_gradient[n] = total[0];
     });
   }
 };

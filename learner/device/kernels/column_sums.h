@@ -11,9 +11,9 @@ namespace shoal::learner::kernels {
 // Sums over rows for each column, in two steps: parts of kRowsOfPart or more rows, then the parts.
 // The block that finishes last in its group of columns adds the parts.
 struct ColumnSums {
-  static constexpr int kColumns = 32, kLanes = 8;  // of a block
+  static constexpr int kColumns = 32, kLanes = 32;  // of a block
   static constexpr int kThreads = kColumns * kLanes;
-  static constexpr int kRowsOfPart = 64, kMostParts = 128;
+  static constexpr int kRowsOfPart = 128, kMostParts = 128;
 
   int functions = 1;
   int64_t rows = 0;  // of one function

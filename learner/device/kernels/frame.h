@@ -23,6 +23,18 @@
 //     operations count blocks and never add numbers.
 //
 // Values of one thread that several phases use are in Block::Private<T>, one T for each thread.
+//
+// The 32 threads of a warp can multiply matrices of bf16 numbers together (tensor cores): in a
+// phase block.Warps(body), body(warp) runs once for each warp, and uses
+//
+//   Block::Rows     16 rows of 16 bf16 numbers, read from shared memory by Block::ReadRows(row_of):
+//                   row_of(k) is the address of row k, whose halves are aligned to 16 bytes; or
+//                   by Block::ReadColumns(half_of): half_of(m, h) is the address of the numbers
+//                   8 h to 8 h + 7 of column m, aligned to 16 bytes
+//   Block::Tile     (16, 16) sums in f32: Clear(); AddProduct(a, b): sums[m][n] += sum over k of
+//                   a[k][m] b[k][n]; ForEachPair(body): body(m, n, sums[m][n], sums[m][n + 1]) for
+//                   all even n
+//   Block::PerWarp<T>   one T for each warp, for several phases
 #pragma once
 
 #include <cstdint>
@@ -30,9 +42,11 @@
 #ifdef __CUDACC__
 #define SHOAL_KERNEL __device__ inline
 #define SHOAL_EVERYWHERE __host__ __device__ constexpr
+#define SHOAL_UNROLL _Pragma("unroll")  // so that an array that the loop indexes is in registers
 #else
 #define SHOAL_KERNEL inline
 #define SHOAL_EVERYWHERE constexpr
+#define SHOAL_UNROLL
 #endif
 
 namespace shoal::learner::kernels {
@@ -42,6 +56,7 @@ SHOAL_EVERYWHERE int64_t CeilDivide(int64_t n, int64_t by) { return (n + by - 1)
 
 // Work on n independent elements: each block computes kElementsOfBlock of them.
 constexpr int kElementThreads = 256;
+constexpr int kWarpThreads = 32;
 constexpr int kElementsOfBlock = 1024;
 SHOAL_EVERYWHERE int BlocksForElements(int64_t n) { return int(CeilDivide(n, kElementsOfBlock)); }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "learner/device/kernels/frame.h"
+#include "learner/device/kernels/numbers.h"
 
 namespace shoal::learner::kernels {
 
@@ -46,6 +47,67 @@ class HostBlock {
     std::vector<T> values_;
   };
 
+  template <class Body>
+  void Warps(const Body& body) const {
+    static_assert(kThreads % kWarpThreads == 0);
+    for (int i = 0; i < kWarps; ++i) body(order_ == HostOrder::kForward ? i : kWarps - 1 - i);
+  }
+
+  struct Rows {
+    float numbers[16][16];
+  };
+  template <class RowOf>
+  static Rows ReadRows(const RowOf& row_of) {
+    Rows rows;
+    for (int k = 0; k < 16; ++k) {
+      const uint16_t* row = row_of(k);
+      for (int m = 0; m < 16; ++m) rows.numbers[k][m] = FromBf16(row[m]);
+    }
+    return rows;
+  }
+
+  template <class HalfOf>
+  static Rows ReadColumns(const HalfOf& half_of) {
+    Rows rows;
+    for (int m = 0; m < 16; ++m) {
+      for (int k = 0; k < 16; ++k) rows.numbers[k][m] = FromBf16(half_of(m, k / 8)[k % 8]);
+    }
+    return rows;
+  }
+
+  class Tile {
+   public:
+    void Clear() { std::memset(sums_, 0, sizeof(sums_)); }
+    void AddProduct(const Rows& a, const Rows& b) {
+      for (int k = 0; k < 16; ++k) {
+        for (int m = 0; m < 16; ++m) {
+          for (int n = 0; n < 16; ++n) sums_[m][n] += a.numbers[k][m] * b.numbers[k][n];
+        }
+      }
+    }
+    template <class Body>
+    void ForEachPair(const Body& body) const {
+      for (int m = 0; m < 16; ++m) {
+        for (int n = 0; n < 16; n += 2) body(m, n, sums_[m][n], sums_[m][n + 1]);
+      }
+    }
+
+   private:
+    float sums_[16][16];
+  };
+
+  template <class T>
+  class PerWarp {
+   public:
+    explicit PerWarp(const HostBlock&) : values_(kWarps) {
+      std::memset(static_cast<void*>(values_.data()), 0xff, values_.size() * sizeof(T));
+    }
+    T& operator()(int warp) { return values_[size_t(warp)]; }
+
+   private:
+    std::vector<T> values_;
+  };
+
   // Returns true in the last of `blocks` blocks that call this function with the same counter. The
   // counter is 0 before and afterwards. The last block sees what the others wrote.
   bool FinishesLast(int32_t* counter, int blocks) const {
@@ -55,6 +117,8 @@ class HostBlock {
   }
 
  private:
+  static constexpr int kWarps = kThreads / kWarpThreads;
+
   const int index_, count_;
   const HostOrder order_;
 };

@@ -28,27 +28,69 @@ struct PoolFrames {
 
   SHOAL_EVERYWHERE int rows() const { return height / pool; }
   SHOAL_EVERYWHERE int columns() const { return width / pool; }
-  int blocks() const { return BlocksForElements(int64_t{batch} * rows() * columns()); }
+  SHOAL_EVERYWHERE int64_t pixels() const { return int64_t(batch) * rows() * columns(); }
+  int blocks() const { return int(CeilDivide(pixels(), int64_t{kThreads} * span())); }
   bool operator==(const PoolFrames&) const = default;
 
-  // One pixel of all channels: neighbouring threads read neighbouring windows of a plane and write
-  // neighbouring pixels.
+  // Neighbouring threads read neighbouring windows of a plane and write neighbouring pixels.
   template <class Block>
   SHOAL_KERNEL void Run(Block& block, Shared&) const {
-    ForElements(block, block.index(), int64_t(batch) * rows() * columns(), [&](int64_t at) {
+    block.Threads([&](int thread) {
+      const int64_t at = (int64_t(block.index()) * kThreads + thread) * span();
+      if (at >= pixels()) return;
       const int j = int(at % columns()), i = int(at / columns() % rows());
-      const int64_t b = at / columns() / rows();
-      const int64_t plane = int64_t(height) * width;
+      const int64_t b = at / columns() / rows(), plane = int64_t(height) * width;
       const uint8_t* corner = in + b * channels * plane + int64_t(i) * pool * width + j * pool;
-      for (int c = 0; c < channels; ++c) {
-        const float scaled = float(Window(corner + c * plane)) * factor + shift;
-        out.Set(at * out_channels + c, scaled);
+      if (span() > 1) {
+        ConvertSpan(corner, at);
+      } else {
+        for (int c = 0; c < out_channels; ++c) {
+          out.Set(at * out_channels + c, c < channels ? Scaled(Window(corner + c * plane)) : 0.f);
+        }
       }
-      for (int c = channels; c < out_channels; ++c) out.Set(at * out_channels + c, 0.f);
     });
   }
 
  private:
+  static constexpr int kSpanBytes = 4;  // that one instruction reads
+
+  // Pixels of one thread: those whose windows have four bytes in each row, or one.
+  SHOAL_EVERYWHERE int span() const {
+    const bool in_fours = (pool == 1 || pool == 2) && width % kSpanBytes == 0;
+    return in_fours && out.f32 == nullptr && out_channels % 8 == 0 ? kSpanBytes / pool : 1;
+  }
+  SHOAL_KERNEL float Scaled(int sum) const { return float(sum) * factor + shift; }
+
+  // All channels of span() pixels, from `at` on.
+  SHOAL_KERNEL void ConvertSpan(const uint8_t* corner, int64_t at) const {
+    for (int first = 0; first < out_channels; first += 8) {
+      Eight pixel_channels[kSpanBytes];
+      SHOAL_UNROLL for (int k = 0; k < 8; ++k) {
+        int sums[kSpanBytes] = {};
+        const bool exists = first + k < channels;
+        if (exists) AddSpan(corner + int64_t(first + k) * height * width, sums);
+        for (int p = 0; p < kSpanBytes; ++p) {
+          pixel_channels[p].numbers[k] = exists ? ToBf16(Scaled(sums[p])) : uint16_t(0);
+        }
+      }
+      for (int p = 0; p < kSpanBytes; ++p) {
+        if (p < span()) WriteEight(pixel_channels[p], out.bf16 + (at + p) * out_channels + first);
+      }
+    }
+  }
+  SHOAL_KERNEL void AddSpan(const uint8_t* corner, int* sums) const {
+    for (int y = 0; y < pool; ++y) {
+      const uint32_t bytes = ReadFourBytes(corner + y * width);
+      for (int x = 0; x < kSpanBytes; ++x) {
+        const int byte = int(bytes >> (8 * x) & 0xffu);
+        if (pool == 1) {
+          sums[x] += byte;
+        } else {
+          sums[x / 2] += byte;
+        }
+      }
+    }
+  }
   SHOAL_KERNEL int Window(const uint8_t* corner) const {
     int sum = 0;
     for (int y = 0; y < pool; ++y) {

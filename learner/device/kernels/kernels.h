@@ -24,17 +24,19 @@
 namespace shoal::learner::kernels {
 
 // A launch of one kernel: its arguments. The members' meanings are in the kernels' headers.
-using Kernel = std::variant<
-    PoolFrames, CopyColumns, SumColumns, GatherLabels, Standardise, AddToMoments, GaussianHead,
-    GaussianHeadBackward, TanhHead, TanhHeadBackward, SampleSquashedGaussian,
-    SquashedGaussianBackward, SquashedGaussianFigures, AddClippedNoise, Targets, AverageCopies,
-    CriticLoss, EntropyActorLoss, DeterministicActorLoss, LabelLoss, PrepareClippedPolicy,
-    ClippedPolicyRows, LogStdGradient, GaussianFigures, Mean, BiasActivation, LayerNormForward,
-    LayerNormBackward, LayerNormBackwardWeights, ActivationBackward, SpatialSoftmaxForward,
-    SpatialSoftmaxBackward, MaxPoolForward, MaxPoolBackward, AveragePoolForward,
-    AveragePoolBackward, ChannelMeans, ChannelVariances, BatchNormForward, BatchNormWeights,
-    BatchNormBackward, AddMap, BeginUpdate, RequireFinite, HoldSteps, SumOfSquares, Adam, EndUpdate,
-    MoveTowards, RoundToBf16, Temperature, TemperatureLoss, StepTemperature>;
+using Kernel =
+    std::variant<PoolFrames, CopyColumns, SumColumns, GatherLabels, Standardise, AddToMoments,
+                 GaussianHead, GaussianHeadBackward, TanhHead, TanhHeadBackward,
+                 SampleSquashedGaussian, SquashedGaussianBackward, SquashedGaussianFigures,
+                 AddClippedNoise, Targets, AverageCopies, CriticLoss, EntropyActorLoss,
+                 DeterministicActorLoss, LabelLoss, PrepareClippedPolicy, ClippedPolicyRows,
+                 LogStdGradient, GaussianFigures, Mean, BiasActivation, LayerNormForward,
+                 LayerNormBackward, LayerNormBackwardWeights, ReluBackward, ActivationBackward,
+                 SpatialSoftmaxForward, SpatialSoftmaxBackward, MaxPoolForward, MaxPoolBackward,
+                 AveragePoolForward, AveragePoolBackward, ChannelMeans, ChannelVariances,
+                 BatchNormForward, BatchNormWeights, BatchNormBackward, AddMap, BeginUpdate,
+                 RequireFinite, HoldSteps, SumOfSquares, Adam, EndUpdate, MoveTowards, RoundToBf16,
+                 Temperature, TemperatureLoss, StepTemperature>;
 static_assert(std::is_trivially_copyable_v<Kernel>, "a launch copies its arguments");
 
 // The arguments of a card's kernel are at most 4 KiB.

@@ -199,8 +199,41 @@ struct LayerNormBackwardWeights {
   }
 };
 
-// dx = dy act'(y), and the gradient of the bias: dbias_j = sum_b dx, of dx as rounded. For dense
-// layers and, with one row for each pixel, for convolutions. dx may be dy. With Activation::kNone,
+// dx = dy where y > 0, else 0, for a map of n numbers, all in f32 or all in bf16. dx may be dy.
+struct ReluBackward {
+  static constexpr int kThreads = kElementThreads;
+  using Shared = NoShared;
+
+  int64_t n = 0;
+  Source dy = {}, y = {};
+  Target dx = {};
+
+  int blocks() const { return InEights() ? BlocksForEights(n) : BlocksForElements(n); }
+  bool operator==(const ReluBackward&) const = default;
+
+  template <class Block>
+  SHOAL_KERNEL void Run(Block& block, Shared&) const {
+    // dy may be infinite where y is 0.
+    if (!InEights()) {
+      ForElements(block, block.index(), n, [&](int64_t i) { dx.Set(i, y[i] > 0 ? dy[i] : 0.f); });
+      return;
+    }
+    ForEights(block, n, [&](int64_t first) {
+      Eight gradient = ReadEight(dy.bf16 + first);
+      const Eight output = ReadEight(y.bf16 + first);
+      for (int k = 0; k < 8; ++k) {
+        if (!(FromBf16(output.numbers[k]) > 0)) gradient.numbers[k] = 0;
+      }
+      WriteEight(gradient, dx.bf16 + first);
+    });
+  }
+
+ private:
+  SHOAL_EVERYWHERE bool InEights() const { return dx.f32 == nullptr && n % 8 == 0; }
+};
+
+// dx = dy act'(y), and the gradient of the bias: dbias_j = sum_b dx, of dx as rounded. dx may be
+// dy. With Activation::kNone,
 // y is not read. partials: sums.PartialsSize().
 struct ActivationBackward {
   static constexpr int kThreads = ColumnSums::kThreads;

@@ -42,6 +42,44 @@ SHOAL_KERNEL uint16_t ToBf16(float value) {
   return uint16_t((bits + 0x7fffu + ((bits >> 16) & 1u)) >> 16);
 }
 
+// Eight adjacent bf16 numbers, which one instruction of a card reads or writes.
+struct alignas(16) Eight {
+  uint16_t numbers[8];
+
+  SHOAL_KERNEL static Eight Zero() {
+    Eight zero;
+    for (uint16_t& number : zero.numbers) number = 0;
+    return zero;
+  }
+};
+// At an address that is aligned to 16 bytes.
+SHOAL_KERNEL Eight ReadEight(const uint16_t* from) { return *reinterpret_cast<const Eight*>(from); }
+SHOAL_KERNEL void WriteEight(const Eight& eight, uint16_t* to) {
+  *reinterpret_cast<Eight*>(to) = eight;
+}
+
+// At an address that is aligned to 4 bytes. The first byte is the lowest.
+SHOAL_KERNEL uint32_t ReadFourBytes(const uint8_t* from) {
+#ifdef __CUDA_ARCH__
+  return *reinterpret_cast<const uint32_t*>(from);  // memcpy would read each byte
+#else
+  uint32_t bytes;
+  memcpy(&bytes, from, sizeof(bytes));
+  return bytes;
+#endif
+}
+
+// Runs body(first) for the first of each eight of n numbers; n is a multiple of 8. One eight for
+// each thread.
+SHOAL_EVERYWHERE int BlocksForEights(int64_t n) { return int(CeilDivide(n / 8, kElementThreads)); }
+template <class Block, class Body>
+SHOAL_KERNEL void ForEights(Block& block, int64_t n, const Body& body) {
+  block.Threads([&](int thread) {
+    const int64_t first = (int64_t(block.index()) * kElementThreads + thread) * 8;
+    if (first < n) body(first);
+  });
+}
+
 // An array to read, f32 or bf16.
 struct Source {
   const float* f32 = nullptr;      // null: bf16

@@ -35,13 +35,15 @@ DenseLayer::DenseLayer(Workspace* workspace, const DeviceParameters& parameters,
       activation_(plans[0].activation),
       has_norm_(plans[0].layer_norm),
       outputs_(plans[0].output.channels) {
-  std::vector<const float*> weights, biases;
+  std::vector<const float*> weights, biases, norm_weights, norm_biases;
   for (const nn::LayerPlan& plan : plans) {
     Function function{
         parameters.Find(plan.name + ".weight"), parameters.Find(plan.name + ".bias"), {}, {}};
     if (has_norm_) {
       function.norm_weight = parameters.Find(plan.name + ".norm.weight");
       function.norm_bias = parameters.Find(plan.name + ".norm.bias");
+      norm_weights.push_back(function.norm_weight.value);
+      norm_biases.push_back(function.norm_bias.value);
     }
     functions_.push_back(function);
     weights.push_back(function.weight.value);
@@ -49,6 +51,7 @@ DenseLayer::DenseLayer(Workspace* workspace, const DeviceParameters& parameters,
   }
   weight_step_ = StepOf(weights);
   bias_step_ = StepOf(biases);
+  if (has_norm_) CHECK(StepOf(norm_weights) == bias_step_ && StepOf(norm_biases) == bias_step_);
   const auto count = int64_t(plans.size());
   const int64_t numbers = count * step();
   output_ = workspace->New<float>(numbers);
@@ -61,7 +64,7 @@ DenseLayer::DenseLayer(Workspace* workspace, const DeviceParameters& parameters,
   if (!trained) return;
   gradient_ = workspace->New<float>(numbers);
   if (source.type == Type::kBf16) rounded_gradient_ = workspace->New<uint16_t>(numbers);
-  const kernels::ColumnSums sums{.rows = workspace->batch(), .columns = outputs_};
+  const kernels::ColumnSums sums = Sums(int(count));
   partials_ = workspace->New<float>(3 * sums.PartialsSize());
   counters_ = workspace->New<int32_t>(sums.groups());
 }
@@ -92,82 +95,85 @@ void DenseLayer::Forward() {
                           .d_step = step(),
                           .bias_step = complete ? bias_step_ : 0});
   if (complete) return;
-  for (int i = 0; i < int(functions_.size()); ++i) ForwardFunction(i);
-}
-
-void DenseLayer::ForwardFunction(int i) {
-  const Function& function = functions_[size_t(i)];
-  const int64_t first = i * step();
-  const kernels::Target y{output_ + first, rounded_ == nullptr ? nullptr : rounded_ + first};
+  const Function& first = functions_[0];
+  const kernels::Target y{output_, rounded_};
   if (!has_norm_) {
-    workspace_->Add(kernels::BiasActivation{.rows = workspace_->batch(),
+    workspace_->Add(kernels::BiasActivation{.functions = int(functions_.size()),
+                                            .rows = workspace_->batch(),
+                                            .step = bias_step_,
                                             .columns = outputs_,
-                                            .x = {.f32 = product_ + first, .bf16 = nullptr},
-                                            .bias = function.bias.value,
+                                            .x = {.f32 = product_, .bf16 = nullptr},
+                                            .bias = first.bias.value,
                                             .activation = ActivationOf(activation_),
                                             .y = y});
     return;
   }
-  workspace_->Add(kernels::LayerNormForward{.rows = workspace_->batch(),
+  workspace_->Add(kernels::LayerNormForward{.functions = int(functions_.size()),
+                                            .rows = workspace_->batch(),
                                             .columns = outputs_,
-                                            .x = product_ + first,
-                                            .linear_bias = function.bias.value,
-                                            .weight = function.norm_weight.value,
-                                            .bias = function.norm_bias.value,
+                                            .step = bias_step_,
+                                            .x = product_,
+                                            .linear_bias = first.bias.value,
+                                            .weight = first.norm_weight.value,
+                                            .bias = first.norm_bias.value,
                                             .activation = ActivationOf(activation_),
-                                            .xhat = normalised_ + first,
-                                            .rstd = scales_ + int64_t(i) * workspace_->batch(),
+                                            .xhat = normalised_,
+                                            .rstd = scales_,
                                             .y = y});
 }
 
 void DenseLayer::Backward(const float* output_gradient, const BackwardPart& part) {
-  for (int i = 0; i < part.count; ++i) {
-    BackwardFunction(i, output_gradient + i * step(), part.parameters);
-  }
+  OutputGradient(output_gradient, part);
   const void* gradient = As(source_.type, gradient_, rounded_gradient_);
   if (part.parameters) WeightGradients(part.count, gradient);
   if (part.source && source_.gradient != nullptr) SourceGradient(part.count, gradient);
 }
 
+kernels::ColumnSums DenseLayer::Sums(int count) const {
+  return {.functions = count,
+          .rows = workspace_->batch(),
+          .columns = outputs_,
+          .partials = partials_,
+          .finished = counters_};
+}
+
 // Writes the gradient of weight x + bias, and the gradients of bias and norm.
-void DenseLayer::BackwardFunction(int i, const float* output_gradient, bool parameters) {
-  const Function& function = functions_[size_t(i)];
-  const int64_t first = i * step();
-  const kernels::Target dx{gradient_ + first,
-                           rounded_gradient_ == nullptr ? nullptr : rounded_gradient_ + first};
-  const kernels::ColumnSums sums{.rows = workspace_->batch(),
-                                 .columns = outputs_,
-                                 .partials = partials_,
-                                 .finished = counters_};
+void DenseLayer::OutputGradient(const float* output_gradient, const BackwardPart& part) {
+  const Function& first = functions_[0];
+  const kernels::Target dx{gradient_, rounded_gradient_};
   if (!has_norm_) {
     workspace_->Add(
-        kernels::ActivationBackward{.sums = sums,
+        kernels::ActivationBackward{.sums = Sums(part.count),
+                                    .step = bias_step_,
                                     .dy = {.f32 = output_gradient, .bf16 = nullptr},
-                                    .y = {.f32 = output_ + first, .bf16 = nullptr},
+                                    .y = {.f32 = output_, .bf16 = nullptr},
                                     .activation = ActivationOf(activation_),
                                     .dx = dx,
-                                    .dbias = parameters ? function.bias.gradient : nullptr});
+                                    .dbias = part.parameters ? first.bias.gradient : nullptr});
     return;
   }
-  workspace_->Add(kernels::LayerNormBackward{.rows = workspace_->batch(),
+  workspace_->Add(kernels::LayerNormBackward{.functions = part.count,
+                                             .rows = workspace_->batch(),
                                              .columns = outputs_,
+                                             .step = bias_step_,
                                              .dy = output_gradient,
-                                             .y = output_ + first,
+                                             .y = output_,
                                              .activation = ActivationOf(activation_),
-                                             .weight = function.norm_weight.value,
-                                             .xhat = normalised_ + first,
-                                             .rstd = scales_ + int64_t(i) * workspace_->batch(),
+                                             .weight = first.norm_weight.value,
+                                             .xhat = normalised_,
+                                             .rstd = scales_,
                                              .dx = dx});
-  if (!parameters) return;
-  workspace_->Add(kernels::LayerNormBackwardWeights{.sums = sums,
+  if (!part.parameters) return;
+  workspace_->Add(kernels::LayerNormBackwardWeights{.sums = Sums(part.count),
+                                                    .step = bias_step_,
                                                     .dy = output_gradient,
-                                                    .y = output_ + first,
-                                                    .xhat = normalised_ + first,
-                                                    .dx = {gradient_ + first, nullptr},
+                                                    .y = output_,
+                                                    .xhat = normalised_,
+                                                    .dx = {gradient_, nullptr},
                                                     .activation = ActivationOf(activation_),
-                                                    .dweight = function.norm_weight.gradient,
-                                                    .dbias = function.norm_bias.gradient,
-                                                    .dlinear_bias = function.bias.gradient});
+                                                    .dweight = first.norm_weight.gradient,
+                                                    .dbias = first.norm_bias.gradient,
+                                                    .dlinear_bias = first.bias.gradient});
 }
 
 // dweight (O, I) = gradient^T x

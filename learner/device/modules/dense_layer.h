@@ -62,8 +62,9 @@ class DenseLayer {
 
   // Whether the product alone computes the output.
   bool ProductIsOutput() const;
-  void ForwardFunction(int i);
-  void BackwardFunction(int i, const float* output_gradient, bool parameters);
+  // Sums over the rows of `count` functions.
+  kernels::ColumnSums Sums(int count) const;
+  void OutputGradient(const float* output_gradient, const BackwardPart& part);
   void WeightGradients(int count, const void* gradient);
   void SourceGradient(int count, const void* gradient);
 

@@ -36,7 +36,6 @@ DeviceConvolution::DeviceConvolution(Workspace* workspace, const nn::LayerPlan& 
             .padding = plan.padding,
             .output_height = plan.output.height,
             .output_width = plan.output.width};
-  if (trained && has_bias_) sums_ = NewPixelSums(workspace, output_, 1);
 }
 
 void DeviceConvolution::SetLayout(const Workspace& workspace, const nn::LayerPlan& plan,
@@ -62,18 +61,17 @@ void DeviceConvolution::Forward(nn::Statistics) {
 
 void DeviceConvolution::Backward() {
   // The gradient of the numbers before the activation replaces that of the output.
-  if (has_bias_) {
-    workspace_->Add(kernels::ActivationBackward{.sums = sums_,
-                                                .dy = Read(*workspace_, output_.gradient),
-                                                .y = Read(*workspace_, output_.values),
-                                                .activation = activation_,
-                                                .dx = Write(*workspace_, output_.gradient),
-                                                .dbias = bias_.gradient});
+  if (activation_ == kernels::Activation::kRelu) {
+    workspace_->Add(kernels::ReluBackward{.n = workspace_->batch() * output_.PixelNumbers(),
+                                          .dy = Read(*workspace_, output_.gradient),
+                                          .y = Read(*workspace_, output_.values),
+                                          .dx = Write(*workspace_, output_.gradient)});
   }
   workspace_->Add(ConvolutionWeights{.shape = shape_,
                                      .x = source_.map.values,
                                      .dy = output_.gradient,
-                                     .weight_gradient = weight_.gradient});
+                                     .weight_gradient = weight_.gradient,
+                                     .bias_gradient = has_bias_ ? bias_.gradient : nullptr});
   if (source_.gradient == nullptr) return;
   workspace_->Add(ConvolutionData{.shape = shape_,
                                   .dy = output_.gradient,

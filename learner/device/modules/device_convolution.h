@@ -25,7 +25,6 @@ class DeviceConvolution final : public DeviceMapLayer {
   ConvolutionShape shape_;
   Tensor weight_, bias_;
   const bool has_bias_;
-  kernels::ColumnSums sums_;  // of the bias's gradient; not in inference
 };
 
 }  // namespace shoal::learner::device

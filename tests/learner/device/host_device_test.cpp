@@ -243,14 +243,17 @@ void HostDeviceTest::CompareConvolution(Type type, ConvolutionShape shape) {
   }
 
   Run(ConvolutionData{shape, of_dy, of_weight, dx});
-  float* dweight = New(weights);
-  Run(ConvolutionWeights{shape, of_x, of_dy, dweight});
+  float *dweight = New(weights), *dbias = New(size_t(shape.filters));
+  Run(ConvolutionWeights{shape, of_x, of_dy, dweight, dbias});
   const std::vector<float> x2 = Numbers(inputs), weight2 = Numbers(weights);
   double to_x = 0, to_weight = 0;
   for (size_t i = 0; i < inputs; ++i) to_x += double(At(type, dx, i)) * x2[i];
   for (size_t i = 0; i < weights; ++i) to_weight += double(dweight[i]) * weight2[i];
   EXPECT_NEAR(to_x, Dot(dy, Convolve(shape, x2, weight)), 10 * tolerance);
   EXPECT_NEAR(to_weight, Dot(dy, Convolve(shape, x, weight2)), 10 * tolerance);
+  std::vector<double> sums(size_t(shape.filters), 0.0);
+  for (size_t i = 0; i < outputs; ++i) sums[i % sums.size()] += At(type, of_dy, i);
+  for (size_t n = 0; n < sums.size(); ++n) EXPECT_NEAR(dbias[n], sums[n], 1e-5) << n;
 }
 
 TEST_F(HostDeviceTest, Convolutions) {

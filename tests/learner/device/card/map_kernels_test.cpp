@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -112,7 +113,7 @@ TEST(MapKernels, GradientsAreAdjointToTheConvolution) {
   for (const MapShape& s : Shapes()) {
     const auto x = Noise(s.inputs(), 4), weight = Noise(s.weights(), 5), dy = Noise(s.outputs(), 6);
     std::vector<float> y(size_t(s.outputs()), kPoison), dx(size_t(s.inputs()), kPoison),
-        dw(size_t(s.weights()), kPoison);
+        dw(size_t(s.weights()), kPoison), dbias(size_t(s.filters), kPoison);
     RunOnHost(ConvolveForward{.shape = s,
                               .x = {.f32 = x.data()},
                               .weight = {.f32 = weight.data()},
@@ -126,8 +127,14 @@ TEST(MapKernels, GradientsAreAdjointToTheConvolution) {
     RunBothOrders(ConvolveWeights{.shape = s,
                                   .x = {.f32 = x.data()},
                                   .dy = {.f32 = dy.data()},
-                                  .weight_gradient = dw.data()},
+                                  .weight_gradient = dw.data(),
+                                  .bias_gradient = dbias.data()},
                   &dw);
+    for (int64_t n = 0; n < s.filters; ++n) {
+      double sum = 0;
+      for (int64_t i = n; i < s.outputs(); i += s.filters) sum += double(dy[size_t(i)]);
+      EXPECT_NEAR(dbias[size_t(n)], sum, 1e-4) << "bias " << n;
+    }
     const double loss = Dot(dy, y);
     EXPECT_NEAR(Dot(dx, x), loss, 2e-3) << "stride " << s.stride << ", padding " << s.padding;
     EXPECT_NEAR(Dot(dw, weight), loss, 2e-3) << "stride " << s.stride << ", padding " << s.padding;
@@ -150,6 +157,25 @@ TEST(MapKernels, ABiasIsAddedToEveryRowOfItsGroup) {
             HostOrder::kForward);
   EXPECT_EQ(y, (std::vector<float>{0, 0,  1,  -2, 0, 0,  1,  -2, -2, -2,
                                    8, 18, 28, -2, 8, 18, 28, -2, -2, -2}));
+}
+
+TEST(MapKernels, ABiasIsAddedToAMapInBf16) {
+  // Three pixels of 16 filters: the value of number i is i - 20.
+  std::vector<Eight> y(6), expected(6);
+  std::vector<float> bias;
+  for (int n = 0; n < 16; ++n) bias.push_back(0.5F * float(n));
+  for (int i = 0; i < 48; ++i) {
+    y[size_t(i / 8)].numbers[i % 8] = ToBf16(float(i - 20));
+    const float sum = float(i - 20) + bias[size_t(i % 16)];
+    expected[size_t(i / 8)].numbers[i % 8] = ToBf16(std::max(0.0F, sum));
+  }
+  RunOnHost(
+      AddBiasToMap{
+          .y = y.data()->numbers, .bias = bias.data(), .relu = 1, .filters = 16, .size = 48},
+      HostOrder::kForward);
+  for (int i = 0; i < 48; ++i) {
+    EXPECT_EQ(y[size_t(i / 8)].numbers[i % 8], expected[size_t(i / 8)].numbers[i % 8]) << i;
+  }
 }
 
 TEST(MapKernels, Bf16IsReadAndWidenedExactly) {

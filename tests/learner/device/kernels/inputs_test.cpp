@@ -35,20 +35,25 @@ class InputKernels : public KernelTest {
     }
     float* f32 = Out(expected.size());
     auto* bf16 = Out<uint16_t>(expected.size());
-    Run(PoolFrames{.in = In(frames),
-                   .out = {f32, bf16},
-                   .batch = kBatch,
-                   .channels = kChannels,
-                   .height = height,
-                   .width = width,
-                   .pool = pool,
-                   .out_channels = kPadded,
-                   .factor = float(1.0 / (255.0 * pool * pool)),
-                   .shift = -0.5f});
+    auto* alone = Out<uint16_t>(expected.size());
+    PoolFrames kernel{.in = In(frames),
+                      .out = {f32, bf16},
+                      .batch = kBatch,
+                      .channels = kChannels,
+                      .height = height,
+                      .width = width,
+                      .pool = pool,
+                      .out_channels = kPadded,
+                      .factor = float(1.0 / (255.0 * pool * pool)),
+                      .shift = -0.5f};
+    Run(kernel);
+    kernel.out = {nullptr, alone};
+    Run(kernel);
     ExpectClose(f32, expected, 1e-6);
     std::vector<uint16_t> rounded(expected.size());
     nn::FloatsToBf16(f32, int64_t(rounded.size()), rounded.data());
     EXPECT_EQ(std::vector<uint16_t>(bf16, bf16 + rounded.size()), rounded);
+    EXPECT_EQ(std::vector<uint16_t>(alone, alone + rounded.size()), rounded);
   }
 };
 
@@ -57,6 +62,9 @@ TEST_F(InputKernels, FramesArePooledAndScaled) {
   ComparePool(17, 31, 2);
   ComparePool(20, 11, 3);
   ComparePool(64, 65, 1);  // several blocks
+  ComparePool(50, 64, 1);  // four pixels for each thread, several blocks
+  ComparePool(42, 84, 2);  // two pixels for each thread
+  ComparePool(12, 84, 3);
 }
 
 TEST_F(InputKernels, ColumnsAreJoinedAndSplit) {

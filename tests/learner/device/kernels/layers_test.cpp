@@ -2,6 +2,9 @@
 // Compares the kernels of dense layers with the operations of the CPU.
 #include "learner/device/kernels/layers.h"
 
+#include <limits>
+#include <vector>
+
 #include "common/nn/layer_norm.h"
 #include "tests/learner/device/kernels/kernel_fixture.h"
 
@@ -171,6 +174,33 @@ TEST_F(LayerKernels, ActivationsBackwardWithSumsOverManyRows) {
     expected[i % kColumns] += FromBf16(gradient);
   }
   for (size_t j = 0; j < kColumns; ++j) EXPECT_NEAR(dbias[j], expected[j], 2e-3);
+}
+
+TEST_F(LayerKernels, ReluStopsGradientsWhereItsOutputIsZero) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  for (const size_t size : {40, 43}) {  // with eights of bf16 numbers, and without
+    std::vector<float> dy = Random(size), y = Random(size);
+    for (size_t i = 0; i < size; i += 3) y[i] = 0;
+    dy[0] = kInfinity;
+    std::vector<float> expected = dy;
+    std::vector<uint16_t> narrow_dy, narrow_y, narrow_expected;
+    for (size_t i = 0; i < size; ++i) {
+      if (!(y[i] > 0)) expected[i] = 0;
+      narrow_dy.push_back(ToBf16(dy[i]));
+      narrow_y.push_back(ToBf16(y[i]));
+      narrow_expected.push_back(ToBf16(expected[i]));
+    }
+    float* dx = Out(size);
+    Run(ReluBackward{
+        .n = int64_t(size), .dy = {In(dy), nullptr}, .y = {In(y), nullptr}, .dx = {dx, nullptr}});
+    EXPECT_EQ(std::vector<float>(dx, dx + size), expected);
+    auto* narrow = Out<uint16_t>(size);
+    Run(ReluBackward{.n = int64_t(size),
+                     .dy = {nullptr, In(narrow_dy)},
+                     .y = {nullptr, In(narrow_y)},
+                     .dx = {nullptr, narrow}});
+    EXPECT_EQ(std::vector<uint16_t>(narrow, narrow + size), narrow_expected);
+  }
 }
 
 TEST_F(LayerKernels, SumsOfRoundedGradients) {
