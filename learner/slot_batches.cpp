@@ -2,7 +2,6 @@
 #include "learner/slot_batches.h"
 
 #include <algorithm>
-#include <iterator>
 
 namespace shoal::learner {
 
@@ -17,20 +16,21 @@ SlotBatches::Verdict SlotBatches::Add(const BatchSlot& slot) {
   return Verdict::kStartedOver;
 }
 
+// Memory that may only be read cannot be pinned on every system.
+SlotBatches::Memory::Memory(const BatchSlot& word, uint64_t learner_session, uint64_t batch_bytes,
+                            const PinMemory& pin)
+    : reader(word.address, learner_session, batch_bytes,
+             pin ? SharedMemory::Access::kReadAndWrite : SharedMemory::Access::kRead),
+      pinned(pin ? pin(reader.memory()) : nullptr) {}
+
 uint8_t* SlotBatches::Open(uint64_t request) {
   const BatchSlot& word = words_.at(request);
-  auto memory = std::ranges::find_if(
-      memories_, [&](const Memory& mapped) { return mapped.reader->address() == word.address; });
-  if (memory == memories_.end()) {
-    // Memory that may only be read cannot be pinned on every system.
-    auto reader = std::make_unique<SlotReader>(
-        word.address, learner_session_, batch_bytes_,
-        pin_ ? SharedMemory::Access::kReadAndWrite : SharedMemory::Access::kRead);
-    auto pinned = pin_ ? pin_(reader->memory()) : nullptr;
-    memories_.push_back({.reader = std::move(reader), .pinned = std::move(pinned)});
-    memory = std::prev(memories_.end());
-  }
-  return memory->reader->Batch(word.slot, request);
+  const auto known = std::ranges::find_if(
+      memories_, [&](const Memory& mapped) { return mapped.reader.address() == word.address; });
+  const Memory& memory = known != memories_.end()
+                             ? *known
+                             : memories_.emplace_back(word, learner_session_, batch_bytes_, pin_);
+  return memory.reader.Batch(word.slot, request);
 }
 
 std::vector<uint64_t> SlotBatches::Refuse(uint64_t request) {
@@ -51,11 +51,11 @@ void SlotBatches::Release(uint64_t request) {
 }
 
 void SlotBatches::Forget() {
-  const SlotReader* newest = memories_.empty() ? nullptr : memories_.back().reader.get();
+  const Memory* newest = memories_.empty() ? nullptr : &memories_.back();
   std::erase_if(memories_, [&](const Memory& memory) {
-    return memory.reader.get() != newest && std::ranges::none_of(words_, [&](const auto& word) {
-             return word.second.address == memory.reader->address();
-           });
+    return &memory != newest && std::ranges::none_of(words_, [&](const auto& word) {
+      return word.second.address == memory.reader.address();
+    });
   });
 }
 

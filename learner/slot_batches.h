@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <list>
 #include <map>
 #include <memory>
 #include <optional>
@@ -54,10 +55,16 @@ class SlotBatches {
   void Release(uint64_t request);
 
  private:
-  // The mapped slots of a replay.
+  // The mapped slots of a replay. Not movable: an assignment would replace the reader first, and a
+  // pin must end before its memory.
   struct Memory {
-    std::unique_ptr<SlotReader> reader;
-    std::shared_ptr<const void> pinned;  // destroyed before the reader
+    Memory(const BatchSlot& word, uint64_t learner_session, uint64_t batch_bytes,
+           const PinMemory& pin);
+    Memory(const Memory&) = delete;
+    Memory& operator=(const Memory&) = delete;
+
+    const SlotReader reader;
+    const std::shared_ptr<const void> pinned;  // destroyed before the reader
   };
 
   // Unmaps each memory to which no slot message refers, except the newest memory.
@@ -66,7 +73,7 @@ class SlotBatches {
   const uint64_t learner_session_, batch_bytes_;
   std::map<uint64_t, BatchSlot> words_;  // by request
   const PinMemory pin_;
-  std::vector<Memory> memories_;
+  std::list<Memory> memories_;
   uint64_t refused_token_ = 0;
 };
 

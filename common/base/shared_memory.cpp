@@ -84,7 +84,8 @@ SharedMemory SharedMemory::Open(int32_t pid, int32_t descriptor, uint64_t bytes,
   const bool writes = access == Access::kReadAndWrite;
   const std::string path = fmt::format("/proc/{}/fd/{}", pid, descriptor);
   // The path may name any kind of file, so opening it must neither wait nor take over a terminal.
-  Descriptor opened(open(path.c_str(), (writes ? O_RDWR : O_RDONLY) | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  Descriptor opened(
+      open(path.c_str(), (writes ? O_RDWR : O_RDONLY) | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
   if (opened.get() < 0) {
     throw RuntimeError("cannot open shared memory '{}': {}", path, std::strerror(errno));
   }

@@ -14,6 +14,7 @@
 
 #include "common/base/error.h"
 #include "common/config/lockstep.h"
+#include "tests/learner/recording_pin.h"
 #include "tests/learner/training_fixture.h"
 
 namespace shoal::learner {
@@ -33,7 +34,7 @@ class BatchSourceTest : public testing::Test {
           requests_.push_back(request);
           return accepting_;
         },
-        resend_after);
+        resend_after, pin_);
     return *source_;
   }
 
@@ -78,6 +79,7 @@ class BatchSourceTest : public testing::Test {
 
   RunConfig run_ = SmallRun();  // two credits
   uint64_t spec_hash_ = run_.spec.Hash();
+  PinMemory pin_;
   bool accepting_ = true;
   std::vector<SampleRequest> requests_;
   std::optional<BatchSource> source_;
@@ -275,6 +277,56 @@ TEST_F(BatchSourceTest, AReplaysSuccessorMayAnswerInItsOwnMemory) {
     EXPECT_EQ(batch->view.reward[0], static_cast<float>(request));
   }
   EXPECT_EQ(source.counters().refused_slots, 0u);
+}
+
+// The memory of assembled batches is used in turn, and pinned once.
+TEST_F(BatchSourceTest, PinsTheMemoryOfAssembledBatchesAtItsFirstUse) {
+  RecordingPin pin;
+  pin_ = pin.Function();
+  BatchSource& source = Make();
+  source.Next(Now());
+  const uint64_t bytes = BatchSchemaOf(run_).total_bytes();
+  for (uint64_t request = 1; request <= 12; ++request) {
+    Answer(request);
+    const auto batch = source.Next(Now());
+    ASSERT_TRUE(batch) << request;
+    const auto* reward = reinterpret_cast<const uint8_t*>(batch->view.reward.data());
+    EXPECT_EQ(std::ranges::count_if(pin.given,
+                                    [&](std::span<const uint8_t> memory) {
+                                      return memory.size() == bytes && reward >= memory.data() &&
+                                             reward < memory.data() + bytes;
+                                    }),
+              1)
+        << request;
+  }
+  EXPECT_LE(pin.given.size(), size_t(run_.config.learner.request_credits + 1));
+  EXPECT_EQ(pin.pinned, int(pin.given.size()));
+  source_.reset();
+  EXPECT_EQ(pin.pinned, 0);
+}
+
+TEST_F(BatchSourceTest, PinsTheSlotsOfAReplayAndOfItsSuccessor) {
+  RecordingPin pin;
+  pin_ = pin.Function();
+  BatchSource& source = Make();
+  source.Next(Now());
+  std::optional<SlotWriter> replay(std::in_place, spec_hash_, kLearnerSession,
+                                   BatchSchemaOf(run_).total_bytes(), 3);
+  AnswerInSlot(*replay, 1);
+  AnswerInSlot(*replay, 2);
+  ASSERT_TRUE(source.Next(Now()));
+  ASSERT_TRUE(source.Next(Now()));
+  EXPECT_EQ(pin.given.size(), 1u);
+  replay.reset();
+  SlotWriter successor = Replay();
+  AnswerInSlot(successor, 3);
+  AnswerInSlot(successor, 4);
+  ASSERT_TRUE(source.Next(Now()));
+  ASSERT_TRUE(source.Next(Now()));
+  EXPECT_EQ(pin.given.size(), 2u);
+  EXPECT_EQ(pin.pinned, 1) << "no batch of the first memory is in use";
+  source_.reset();
+  EXPECT_EQ(pin.pinned, 0);
 }
 
 TEST_F(BatchSourceTest, WordsOfSlotsThatNobodyWaitsForAreCounted) {

@@ -42,6 +42,24 @@ TEST(SharedMemory, AReaderCannotWriteIt) {
   EXPECT_EQ(errno, EACCES);
 }
 
+TEST(SharedMemory, ItCanBeOpenedForWriting) {
+  const SharedMemory made = SharedMemory::Make("test", kBytes);
+  const SharedMemory opened =
+      SharedMemory::Open(getpid(), made.descriptor(), kBytes, SharedMemory::Access::kReadAndWrite);
+  ASSERT_EQ(mprotect(opened.data(), kBytes, PROT_READ | PROT_WRITE), 0) << "mapped for reading";
+  opened.data()[kBytes - 1] = 7;
+  EXPECT_EQ(made.data()[kBytes - 1], 7);
+}
+
+TEST(SharedMemory, MemoryThatIsSealedAgainstWritingCannotBeOpenedForWriting) {
+  const Descriptor made = SharedMemory::MakeOf("test", {"abc"});
+  EXPECT_THAT(ErrorMessage([&] {
+                SharedMemory::Open(getpid(), made.get(), 3, SharedMemory::Access::kReadAndWrite);
+              }),
+              HasSubstr("shared memory"));
+  EXPECT_EQ(SharedMemory::Open(getpid(), made.get(), 3).data()[2], 'c');
+}
+
 TEST(SharedMemory, NobodyMakesItSmallerUnderAnother) {
   const SharedMemory made = SharedMemory::Make("test", kBytes);
   EXPECT_EQ(ftruncate(made.descriptor(), 1), -1);
