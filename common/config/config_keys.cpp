@@ -157,8 +157,8 @@ std::vector<Key> ReplayKeys() {
                 "chunks an actor may have unacknowledged"),
       SHOAL_KEY(replay.threads, (IntegerRange{0, 1024}),
                 "threads of the replay server that copy the frames of a batch; the bytes of a "
-                "batch do not depend on their number; 0 = one, and more while copying takes most "
-                "of the server's time: up to one for every four cores, at most four"),
+                "batch do not depend on their number; 0 = one, and more while they copy most of "
+                "the time: up to one for every two cores, at most eight"),
   };
 }
 

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstring>
 #include <span>
+#include <utility>
 
 #include "common/base/check.h"
 #include "common/base/error.h"
@@ -82,25 +83,37 @@ uint8_t* SlotWriter::FreeSlot() {
   return memory_.data() + SlotOffset(batch_bytes_, static_cast<uint32_t>(slots_.size()), *writing_);
 }
 
+void SlotWriter::Reserve(uint64_t request) {
+  CHECK(writing_ && request > 0 && !Find(request)) << request;
+  slots_[*writing_] = {.request = request};
+  writing_.reset();
+}
+
+std::optional<uint32_t> SlotWriter::Find(uint64_t request) const {
+  const auto found = std::ranges::find(slots_, request, &Slot::request);
+  if (request == 0 || found == slots_.end()) return std::nullopt;
+  return static_cast<uint32_t>(found - slots_.begin());
+}
+
 BatchSlot SlotWriter::Fill(uint64_t request, uint64_t stored_records, uint64_t stored_steps,
                            uint64_t unsampleable_steps) {
-  CHECK(writing_ && request > 0 && !Held(request)) << request;
-  const uint32_t slot = *writing_;
-  writing_.reset();
-  slots_[slot] = {request, stored_records, stored_steps, unsampleable_steps};
+  const std::optional<uint32_t> reserved = Find(request);
+  CHECK((reserved || writing_) && request > 0 && !Held(request)) << request;
+  const uint32_t slot = reserved ? *reserved : *std::exchange(writing_, std::nullopt);
+  slots_[slot] = {request, /*full=*/true, stored_records, stored_steps, unsampleable_steps};
   RequestWord(memory_, slot).store(request, std::memory_order_release);
   return Word(slot);
 }
 
 std::optional<BatchSlot> SlotWriter::Held(uint64_t request) const {
-  const auto held = std::ranges::find(slots_, request, &Slot::request);
-  if (request == 0 || held == slots_.end()) return std::nullopt;
-  return Word(static_cast<uint32_t>(held - slots_.begin()));
+  const std::optional<uint32_t> slot = Find(request);
+  if (!slot || !slots_[*slot].full) return std::nullopt;
+  return Word(*slot);
 }
 
 void SlotWriter::Release(uint64_t released) {
   for (Slot& slot : slots_) {
-    if (slot.request <= released) slot.request = 0;
+    if (slot.full && slot.request <= released) slot = {};
   }
 }
 

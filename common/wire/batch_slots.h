@@ -39,26 +39,33 @@ class SlotWriter {
   static uint64_t MemoryBytes(uint64_t batch_bytes, uint32_t slots);
 
   const SlotAddress& address() const { return address_; }
-  // Returns the memory of a free slot: batch_bytes bytes, aligned to 4096. Returns nullptr if all
-  // slots contain batches. The slot counts as free until Fill().
+  // Returns the memory of a free slot: batch_bytes bytes, aligned to 4096. Returns nullptr if no
+  // slot is free. The slot counts as free until Reserve() or Fill().
   uint8_t* FreeSlot();
-  // Marks the slot that FreeSlot() returned last as full: it contains the batch of `request`. No
-  // other slot may contain a batch of this request. Returns the message for the learner.
+  // Keeps the slot that FreeSlot() returned last for the batch of `request`, until Fill(). FreeSlot
+  // may be called again before.
+  void Reserve(uint64_t request);
+  // Marks the slot that is reserved for `request` or, without such a slot, the slot that FreeSlot()
+  // returned last as full: it contains the batch of `request`. No other slot may contain a batch of
+  // this request. Returns the message for the learner.
   BatchSlot Fill(uint64_t request, uint64_t stored_records, uint64_t stored_steps,
                  uint64_t unsampleable_steps = 0);
   // The message that announced the slot of `request`; empty if no slot contains this batch.
   std::optional<BatchSlot> Held(uint64_t request) const;
-  // Frees the slots of requests up to `released`.
+  // Frees the full slots of requests up to `released`.
   void Release(uint64_t released);
-  // Number of slots that contain a batch.
+  // Number of slots that contain a batch or are reserved for one.
   uint32_t held() const;
 
  private:
   struct Slot {
     uint64_t request = 0;  // 0: free
+    bool full = false;     // false: free or reserved
     uint64_t stored_records = 0, stored_steps = 0, unsampleable_steps = 0;
   };
   BatchSlot Word(uint32_t slot) const;
+  // The slot that contains the batch of `request` or is reserved for it.
+  std::optional<uint32_t> Find(uint64_t request) const;
 
   const uint64_t spec_hash_, learner_session_, batch_bytes_;
   const SharedMemory memory_;

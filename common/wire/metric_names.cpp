@@ -197,7 +197,7 @@ constexpr Metric kMetrics[] = {
     {"replay", "pool_drops", kCounter, "",
      "chunks dropped because no buffer was free; the actors send them again"},
     {"replay", "inserting", kStage, "s", "storing records"},
-    {"replay", "sampling", kStage, "s", "drawing batches"},
+    {"replay", "sampling", kStage, "s", "drawing batches, and waiting for threads that copy them"},
     {"replay", "sending", kStage, "s", "sending batches, on a thread of its own"},
     {"replay", "idle", kStage, "s", "waiting for messages"},
     {"replay", "policy_lag", kQuantiles, "updates",

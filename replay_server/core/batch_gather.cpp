@@ -43,6 +43,24 @@ std::optional<BatchPlan> DrawPlan(const PlanOptions& options, Selector* selector
   return plan;
 }
 
+size_t FrameCopies::CopiesOfPart() const {
+  const auto frame_bytes = static_cast<size_t>(channels * height * width);
+  return std::max<size_t>(1, kBytesOfPart / std::max<size_t>(1, frame_bytes));
+}
+
+int FrameCopies::parts() const {
+  return static_cast<int>((copies.size() + CopiesOfPart() - 1) / CopiesOfPart());
+}
+
+void FrameCopies::MakePart(int part) const {
+  const size_t begin = static_cast<size_t>(part) * CopiesOfPart();
+  const size_t end = std::min(copies.size(), begin + CopiesOfPart());
+  for (size_t i = begin; i < end; ++i) {
+    const Copy& copy = copies[i];
+    ShiftPlanes(copy.frame, channels, height, width, copy.shift, copy.out);
+  }
+}
+
 BatchGather::BatchGather(const Ring& ring, const EpisodeIndex& index, const ObservationSpec& spec,
                          const NStep& n_step, const GoalChange* goals,
                          std::span<const std::string> privileged)
@@ -84,27 +102,30 @@ BatchGather::Returns BatchGather::SumRewards(uint64_t first, std::span<const flo
   return {last, static_cast<float>(reward), terminated(last) ? 0.0f : static_cast<float>(discount)};
 }
 
-void BatchGather::GatherStack(uint64_t id, Shift shift, uint8_t* out) const {
+void BatchGather::AddFrame(uint64_t id, Shift shift, uint8_t* out, FrameCopies* copies) const {
+  copies->copies.push_back({ring_.layout().Frame(ring_.Record(id)).data(), shift, out});
+  copies->oldest = copies->oldest == 0 ? id : std::min(copies->oldest, id);
+}
+
+void BatchGather::AddStack(uint64_t id, Shift shift, uint8_t* out, FrameCopies* copies) const {
   const int frame_bytes = ring_.layout().frame_bytes();
   // The newest frame is the last, so the stack is filled from the back. Below the reset, the
   // reset's frame is repeated.
   for (int k = stack_ - 1; k >= 0; --k) {
-    const uint8_t* frame = ring_.layout().Frame(ring_.Record(id)).data();
-    ShiftPlanes(frame, channels_, height_, width_, shift, out + k * frame_bytes);
+    AddFrame(id, shift, out + k * frame_bytes, copies);
     if (ring_.Header(id).kind == RecordKind::kStep) id = ring_.Slot(id).prev;
   }
 }
 
-void BatchGather::GatherPictures(const BatchPlan::Element& element, uint64_t last, uint8_t* obs,
-                                 uint8_t* next_obs) const {
-  GatherStack(ring_.Slot(element.id).prev, element.obs, obs);
-  GatherStack(last, element.next_obs, next_obs);
+void BatchGather::AddPictures(const BatchPlan::Element& element, uint64_t last, uint8_t* obs,
+                              uint8_t* next_obs, FrameCopies* copies) const {
+  AddStack(ring_.Slot(element.id).prev, element.obs, obs, copies);
+  AddStack(last, element.next_obs, next_obs, copies);
   if (!goal_pictures_) return;
   const uint64_t shown = element.goal != 0 ? element.goal : index_.GoalRecord(element.id);
-  const uint8_t* picture = ring_.layout().Frame(ring_.Record(shown)).data();
   const ptrdiff_t behind = ptrdiff_t{stack_} * ring_.layout().frame_bytes();
-  ShiftPlanes(picture, channels_, height_, width_, element.obs, obs + behind);
-  ShiftPlanes(picture, channels_, height_, width_, element.next_obs, next_obs + behind);
+  AddFrame(shown, element.obs, obs + behind, copies);
+  AddFrame(shown, element.next_obs, next_obs + behind, copies);
 }
 
 void BatchGather::GatherVectors(const BatchPlan::Element& element, uint64_t last,
@@ -125,33 +146,30 @@ void BatchGather::GatherVectors(const BatchPlan::Element& element, uint64_t last
   gather(last, out.next_obs_vector, out.next_obs_privileged);
 }
 
-void BatchGather::Gather(const BatchPlan& plan, const BatchView& out, const RunParts& run) const {
-  const RecordLayout& layout = ring_.layout();
-  const size_t batch = plan.elements.size();
-  CHECK(out.obs_privileged.size() == batch * static_cast<size_t>(privileged_.size()));
-  CHECK(out.reward.size() == batch && out.obs_frames.size() == batch * InputBytes() &&
-        out.obs_vector.size() == batch * static_cast<size_t>(observed_.size()) &&
-        out.action.size() == batch * static_cast<size_t>(layout.action_size()))
-      << "a batch of " << out.reward.size() << " for a plan of " << batch;
-  if (run == nullptr) return GatherElements(plan, 0, batch, out);
-  constexpr size_t kPart = kElementsOfPart;
-  run(static_cast<int>((batch + kPart - 1) / kPart), [&](int part) {
-    const size_t begin = static_cast<size_t>(part) * kPart;
-    GatherElements(plan, begin, std::min(batch, begin + kPart), out);
-  });
-}
-
 size_t BatchGather::InputBytes() const {
   return static_cast<size_t>(ring_.layout().frame_bytes()) *
          static_cast<size_t>(stack_ + (goal_pictures_ ? 1 : 0));
 }
 
-void BatchGather::GatherElements(const BatchPlan& plan, size_t begin, size_t end,
-                                 const BatchView& out) const {
+void BatchGather::Gather(const BatchPlan& plan, const BatchView& out) const {
+  const FrameCopies copies = GatherAllButFrames(plan, out);
+  for (int part = 0; part < copies.parts(); ++part) copies.MakePart(part);
+}
+
+FrameCopies BatchGather::GatherAllButFrames(const BatchPlan& plan, const BatchView& out) const {
   const RecordLayout& layout = ring_.layout();
-  const size_t input_bytes = InputBytes();
+  const size_t batch = plan.elements.size(), input_bytes = InputBytes();
+  CHECK(out.obs_privileged.size() == batch * static_cast<size_t>(privileged_.size()));
+  CHECK(out.reward.size() == batch && out.obs_frames.size() == batch * input_bytes &&
+        out.obs_vector.size() == batch * static_cast<size_t>(observed_.size()) &&
+        out.action.size() == batch * static_cast<size_t>(layout.action_size()))
+      << "a batch of " << out.reward.size() << " for a plan of " << batch;
   const auto action_size = static_cast<size_t>(layout.action_size());
-  for (size_t b = begin; b < end; ++b) {
+  FrameCopies copies{.copies = {}, .channels = channels_, .height = height_, .width = width_};
+  if (input_bytes > 0) {
+    copies.copies.reserve(2 * batch * static_cast<size_t>(stack_ + (goal_pictures_ ? 1 : 0)));
+  }
+  for (size_t b = 0; b < batch; ++b) {
     const BatchPlan::Element& element = plan.elements[b];
     const std::span<const float> goal = GoalOf(element);
     const Returns returns = SumRewards(element.id, goal);
@@ -159,8 +177,8 @@ void BatchGather::GatherElements(const BatchPlan& plan, size_t begin, size_t end
     CHECK(RecordLayout::Header(first).kind == RecordKind::kStep && ring_.Slot(element.id).prev != 0)
         << "record " << element.id;
     if (input_bytes > 0) {
-      GatherPictures(element, returns.last, out.obs_frames.data() + b * input_bytes,
-                     out.next_obs_frames.data() + b * input_bytes);
+      AddPictures(element, returns.last, out.obs_frames.data() + b * input_bytes,
+                  out.next_obs_frames.data() + b * input_bytes, &copies);
     }
     GatherVectors(element, returns.last, goal, b, out);
     std::ranges::copy(layout.Action(first), out.action.data() + b * action_size);
@@ -169,6 +187,7 @@ void BatchGather::GatherElements(const BatchPlan& plan, size_t begin, size_t end
     out.weights_update[b] = RecordLayout::Header(first).weights_update;
     out.id[b] = element.id;
   }
+  return copies;
 }
 
 }  // namespace shoal::replay

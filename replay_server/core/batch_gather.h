@@ -28,7 +28,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -73,9 +72,28 @@ struct PlanOptions {
 std::optional<BatchPlan> DrawPlan(const PlanOptions& options, Selector* selector,
                                   Relabeller* relabeller, Random* random);
 
-// Calls part(0) .. part(parts - 1), each once, on any threads and in any order. Returns when all
-// these calls have returned.
-using RunParts = std::function<void(int parts, const std::function<void(int part)>& part)>;
+// Frames of a batch that are still to be copied, from the ring to the batch. The frames of the ring
+// do not change until the record `oldest` is overwritten. The copies are independent of each other:
+// any threads may make them, in any order. A value type that borrows ring and batch.
+struct FrameCopies {
+  struct Copy {
+    const uint8_t* frame;
+    Shift shift;
+    uint8_t* out;
+  };
+  // Makes the copies of part 0 <= part < parts().
+  void MakePart(int part) const;
+  // Parts have about kBytesOfPart bytes, and at least one frame.
+  int parts() const;
+  static constexpr size_t kBytesOfPart = 512 * 1024;
+
+  std::vector<Copy> copies;
+  int channels = 0, height = 0, width = 0;  // of a frame
+  uint64_t oldest = 0;                      // lowest id of the copied records; 0 = no copies
+
+ private:
+  size_t CopiesOfPart() const;
+};
 
 struct NStep {
   int steps = 1;  // n
@@ -92,17 +110,12 @@ class BatchGather {
 
   // Writes every byte of the arrays in `out`, whose batch is plan.elements.size() (CHECKed). The
   // steps must be sampleable for this stack and n.
-  //
-  // `run` may divide the elements among threads, in parts of kElementsOfPart elements. Null: the
-  // calling thread copies all elements. The result does not depend on the division.
-  void Gather(const BatchPlan& plan, const BatchView& out, const RunParts& run = nullptr) const;
-
-  static constexpr int kElementsOfPart = 4;  // 340 kB of frames with two cameras
+  void Gather(const BatchPlan& plan, const BatchView& out) const;
+  // Does the same except for the frames. Returns the copies that write the frames.
+  FrameCopies GatherAllButFrames(const BatchPlan& plan, const BatchView& out) const;
 
  private:
   size_t InputBytes() const;  // bytes of one observation's pictures
-  // Does the work of Gather for the elements [begin, end) of the plan.
-  void GatherElements(const BatchPlan& plan, size_t begin, size_t end, const BatchView& out) const;
   // The goal of a relabelled element; empty for other elements.
   std::span<const float> GoalOf(const BatchPlan::Element& element) const;
   // The last step of a sample, its reward and its bootstrap.
@@ -111,12 +124,13 @@ class BatchGather {
     float reward, bootstrap;
   };
   Returns SumRewards(uint64_t first, std::span<const float> goal) const;
-  // Writes the stack of K frames that ends at record `id` to `out` (K*C, H, W).
-  void GatherStack(uint64_t id, Shift shift, uint8_t* out) const;
-  // Writes the two observations of an element whose last step is `last`: stacks and goal pictures
-  // (I, H, W).
-  void GatherPictures(const BatchPlan::Element& element, uint64_t last, uint8_t* obs,
-                      uint8_t* next_obs) const;
+  void AddFrame(uint64_t id, Shift shift, uint8_t* out, FrameCopies* copies) const;
+  // Adds the copies of the stack of K frames that ends at record `id` to `out` (K*C, H, W).
+  void AddStack(uint64_t id, Shift shift, uint8_t* out, FrameCopies* copies) const;
+  // Adds the copies of the two observations of an element whose last step is `last`: stacks and
+  // goal pictures (I, H, W).
+  void AddPictures(const BatchPlan::Element& element, uint64_t last, uint8_t* obs,
+                   uint8_t* next_obs, FrameCopies* copies) const;
   void GatherVectors(const BatchPlan::Element& element, uint64_t last, std::span<const float> goal,
                      size_t row, const BatchView& out) const;
 

@@ -148,6 +148,13 @@ RequestFate ReplayCore::TakeRequest(const SampleRequest& request) {
 }
 
 std::optional<DrawnBatch> ReplayCore::TryAnswer(uint8_t* data) {
+  const std::optional<BegunBatch> begun = BeginAnswer(data);
+  if (!begun) return std::nullopt;
+  for (int part = 0; part < begun->copies.parts(); ++part) begun->copies.MakePart(part);
+  return begun->batch;
+}
+
+std::optional<BegunBatch> ReplayCore::BeginAnswer(uint8_t* data) {
   const std::optional<SampleRequest> request = requests_.Next(ring_.stored_steps());
   if (!request) return std::nullopt;
   const bool repeated = requests_.Answered(*request);
@@ -159,7 +166,7 @@ std::optional<DrawnBatch> ReplayCore::TryAnswer(uint8_t* data) {
                                            policies_.relabeller.get(), &random);
   if (!plan) return std::nullopt;
   const BatchView view = batch_schema_.View(data);
-  gather_.Gather(*plan, view, gatherers_);
+  FrameCopies copies = gather_.GatherAllButFrames(*plan, view);
   last_plan_ = *std::move(plan);
   requests_.Pop();
   if (repeated) {
@@ -171,7 +178,8 @@ std::optional<DrawnBatch> ReplayCore::TryAnswer(uint8_t* data) {
     counters_.zero_rewards += static_cast<uint64_t>(std::ranges::count(view.reward, 0.0f));
     limiter_.Sampled();
   }
-  return DrawnBatch{*request, ring_.last_id(), ring_.stored_steps(), index_.unsampleable()};
+  return BegunBatch{{*request, ring_.last_id(), ring_.stored_steps(), index_.unsampleable()},
+                    std::move(copies)};
 }
 
 std::optional<SampleRequest> ReplayCore::NextRepeated() const {

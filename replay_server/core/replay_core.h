@@ -19,7 +19,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "common/config/run_config.h"
@@ -50,6 +49,12 @@ void CheckSampling(const RunConfig& run);
 struct DrawnBatch {
   SampleRequest request;
   uint64_t stored_records = 0, stored_steps = 0, unsampleable_steps = 0;  // at the time of the draw
+};
+
+// A batch whose frames are still to be copied.
+struct BegunBatch {
+  DrawnBatch batch;
+  FrameCopies copies;
 };
 
 // Counts since construction unless stated otherwise.
@@ -85,6 +90,9 @@ class ReplayCore {
   // bytes, aligned to 64). Returns empty if there is no request or if the next request must wait
   // longer.
   std::optional<DrawnBatch> TryAnswer(uint8_t* data);
+  // Does the same except for the frames. The caller makes the copies that write the frames, before
+  // it stores the record copies.oldest + ring().capacity().
+  std::optional<BegunBatch> BeginAnswer(uint8_t* data);
   // The request that TryAnswer would answer now, if this request was answered before; else empty.
   // If the caller still has the earlier batch, the caller sends the earlier batch again and calls
   // AnsweredAgain() instead of TryAnswer.
@@ -102,10 +110,6 @@ class ReplayCore {
   // Answer to an actor that has another spec or that a newer session has replaced. It contains this
   // server's spec hash, the actor's newest session and no credit.
   Credit Refusal(const TransitionChunk& chunk) const;
-
-  // Sets the function that divides the copying of a batch among threads (BatchGather::Gather).
-  // Null: the calling thread copies.
-  void SetGatherers(RunParts run) { gatherers_ = std::move(run); }
 
   void SetDraining(bool draining);
   bool draining() const { return draining_; }
@@ -149,7 +153,6 @@ class ReplayCore {
   Intake intake_;
   ReplayPolicies policies_;
   BatchGather gather_;
-  RunParts gatherers_;
   RateLimiter limiter_;
   CreditBook credits_;
   RequestQueue requests_;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <utility>
 
 #include "common/base/check.h"
 #include "common/base/clock.h"
@@ -10,8 +12,8 @@
 namespace shoal::replay {
 namespace {
 
-// Shares of the service's time; the service also stores records. The gap between the two shares
-// keeps the number of threads stable while the rate of batches is constant.
+// The gap between the two shares keeps the number of threads stable while the rate of batches is
+// constant.
 constexpr double kMuch = 0.5, kEnough = 0.4;
 
 constexpr std::chrono::hours kLong{1};  // a wait that a notification ends
@@ -19,10 +21,18 @@ constexpr std::chrono::hours kLong{1};  // a wait that a notification ends
 }  // namespace
 
 int GatherThreadsFor(double share, int threads, int most) {
-  if (share > kMuch) return std::clamp(threads + 1, 1, most);
+  if (share > kMuch) {
+    const auto enough = static_cast<int>(std::ceil(share * threads / kMuch));
+    return std::clamp(std::max(enough, threads + 1), 1, most);
+  }
   const double with_fewer = threads > 1 ? share * threads / (threads - 1) : 1;
   if (with_fewer < kEnough) return std::clamp(threads - 1, 1, most);
   return std::clamp(threads, 1, most);
+}
+
+GatherThreads::GatherThreads(int threads, std::function<void()> on_done)
+    : on_done_(std::move(on_done)) {
+  Resize(threads);
 }
 
 void GatherThreads::Resize(int threads) {
@@ -31,7 +41,7 @@ void GatherThreads::Resize(int threads) {
   {
     const MutexLock lock(mutex_);
     leaving_ = true;
-    changed_.NotifyAll();
+    work_.NotifyAll();
   }
   for (Thread& helper : helpers_) helper.join();
   helpers_.clear();
@@ -42,53 +52,83 @@ void GatherThreads::Resize(int threads) {
   for (int i = 1; i < threads; ++i) helpers_.emplace_back([this] { Serve(); });
 }
 
-void GatherThreads::Run(int parts, const std::function<void(int part)>& part) {
-  if (helpers_.empty()) {
-    for (int i = 0; i < parts; ++i) part(i);
-    return;
-  }
-  {
-    const MutexLock lock(mutex_);
-    parts_ = parts;
-    taken_.store(0, std::memory_order_relaxed);
-    job_ = &part;
-    ++jobs_;
-    changed_.NotifyAll();
-  }
-  TakeParts();
+uint64_t GatherThreads::Start(int parts, std::function<void(int part)> part) {
   const MutexLock lock(mutex_);
-  job_ = nullptr;  // a helper that wakes up late finds no job
-  while (busy_ > 0) changed_.WaitUntil(mutex_, Now() + kLong);
+  const uint64_t number = ++started_;
+  if (parts <= 0) return number;
+  jobs_.push_back({number, parts, 0, 0, std::move(part)});
+  work_.NotifyAll();
+  return number;
 }
 
-void GatherThreads::TakeParts() {
-  const std::function<void(int)>* job = nullptr;
-  {
-    const MutexLock lock(mutex_);
-    job = job_;
+bool GatherThreads::Done(uint64_t job) const {
+  const MutexLock lock(mutex_);
+  return std::ranges::find(jobs_, job, &Job::number) == jobs_.end();
+}
+
+bool GatherThreads::HasWork() const {
+  const MutexLock lock(mutex_);
+  return std::ranges::any_of(jobs_, [](const Job& job) { return job.taken < job.parts; });
+}
+
+bool GatherThreads::Help() {
+  const MutexLock lock(mutex_);
+  Job* job = Waiting();
+  if (job == nullptr) return false;
+  if (!helpers_.empty()) {
+    RunPart(job);
+    return true;
   }
-  for (;;) {
-    const int part = taken_.fetch_add(1, std::memory_order_relaxed);
-    if (part >= parts_) return;
-    (*job)(part);
+  while (!RunPart(job)) {
   }
+  return true;
+}
+
+void GatherThreads::Finish(uint64_t job) {
+  const MutexLock lock(mutex_);
+  while (!jobs_.empty() && jobs_.front().number <= job) {
+    if (Job* waiting = Waiting(); waiting != nullptr && waiting->number <= job) {
+      RunPart(waiting);
+    } else {
+      done_.WaitUntil(mutex_, Now() + kLong);
+    }
+  }
+}
+
+double GatherThreads::seconds() const {
+  const MutexLock lock(mutex_);
+  return seconds_;
+}
+
+GatherThreads::Job* GatherThreads::Waiting() {
+  const auto waiting = std::ranges::find_if(jobs_, [](const Job& j) { return j.taken < j.parts; });
+  return waiting == jobs_.end() ? nullptr : &*waiting;
+}
+
+bool GatherThreads::RunPart(Job* job) {
+  const int part = job->taken++;
+  mutex_.Unlock();
+  const SteadyTime start = Now();
+  job->part(part);  // the job stays, because this part is not counted as run
+  const double seconds = SecondsSince(start);
+  mutex_.Lock();
+  seconds_ += seconds;
+  if (++job->run < job->parts) return false;
+  jobs_.remove_if([job](const Job& other) { return &other == job; });
+  done_.NotifyAll();
+  return true;
 }
 
 void GatherThreads::Serve() {
-  uint64_t seen = 0;
   for (;;) {
+    bool job_done = false;
     {
       const MutexLock lock(mutex_);
-      while (!leaving_ && (job_ == nullptr || jobs_ == seen)) {
-        changed_.WaitUntil(mutex_, Now() + kLong);
-      }
+      while (!leaving_ && Waiting() == nullptr) work_.WaitUntil(mutex_, Now() + kLong);
       if (leaving_) return;
-      seen = jobs_;
-      ++busy_;
+      job_done = RunPart(Waiting());
     }
-    TakeParts();
-    const MutexLock lock(mutex_);
-    if (--busy_ == 0 && job_ == nullptr) changed_.NotifyAll();
+    if (job_done && on_done_) on_done_();
   }
 }
 

@@ -17,6 +17,13 @@ LearnerSlots::LearnerSlots(uint64_t spec_hash, uint64_t batch_bytes, uint32_t sl
                            std::function<MemoryRoom()> room)
     : spec_hash_(spec_hash), batch_bytes_(batch_bytes), slots_(slots), room_(std::move(room)) {}
 
+bool LearnerSlots::GivesUp(const SampleRequest& request) const {
+  if (!writer_) return false;
+  return request.learner_session > session_ ||
+         (request.learner_session == session_ &&
+          request.refused_token == writer_->address().token[0]);
+}
+
 void LearnerSlots::OnRequest(const SampleRequest& request) {
   if (request.learner_session < session_) return;
   if (request.learner_session > session_) Begin(request);

@@ -27,6 +27,8 @@ class LearnerSlots {
   // Call this function for every request of the present learner session or of a newer session,
   // including repeated requests.
   void OnRequest(const SampleRequest& request);
+  // Whether OnRequest(request) would give up the slots of the present writer.
+  bool GivesUp(const SampleRequest& request) const;
   // The writer of the slots; nullptr if batches are sent over the network.
   SlotWriter* writer() { return writer_ ? &*writer_ : nullptr; }
   uint32_t held() const { return writer_ ? writer_->held() : 0; }

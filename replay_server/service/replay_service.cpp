@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "common/base/check.h"
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/log.h"
@@ -23,11 +24,11 @@ using std::chrono::milliseconds;
 constexpr milliseconds kPoll{100};  // between looks at control and stop requests
 constexpr int kBatchBuffers = 2;    // one being filled, one being sent
 constexpr milliseconds kProgressSpacing{200};
-constexpr std::chrono::seconds kChoiceSpacing{1};
+constexpr milliseconds kChoiceSpacing{250};
 
-// Upper bound with replay.threads = 0. Memory, not cores, limits how many threads copy faster; four
-// reach most of its bandwidth.
-int MostGatherers() { return std::clamp(UsableCores() / 4, 1, 4); }
+// Upper bound with replay.threads = 0. Only a learner on a GPU uses batches so fast that more than
+// two or three threads are needed. Eight threads reach most of the bandwidth of the memory.
+int MostGatherers() { return std::clamp(UsableCores() / 2, 1, 8); }
 
 }  // namespace
 
@@ -42,7 +43,6 @@ ReplayService::ReplayService(const std::filesystem::path& folder, const ProcessN
       core_(run_, folder, NextSession(folder, name.Text(), WallTimeNs()),
             {before_.stored_steps, before_.sessions}, [this] { ReportStarting(); }),
       session_clock_(core_.replay_session()),
-      gatherers_(std::max(1, Settings().replay.threads)),
       most_gatherers_(MostGatherers()),
       control_(Now()),
       inbox_(SpecHash(), ChunkBytes(Window(), core_.ring().layout().record_bytes()), MaxChunks()),
@@ -57,13 +57,12 @@ ReplayService::ReplayService(const std::filesystem::path& folder, const ProcessN
       // reads.
       slots_(SpecHash(), core_.batch_schema().total_bytes(),
              static_cast<uint32_t>(Settings().learner.request_credits) + 1),
+      gatherers_(std::max(1, Settings().replay.threads), [this] { inbox_.Wake(); }),
+      in_work_(&gatherers_),
       report_(name, core_, inbox_, sender_, slots_, gatherers_),
       control_subscriber_(hub, [this](const ControlMessage& m) { control_.OnMessage(m, Now()); }),
       request_subscriber_(hub, [this](const SampleRequest& r) { inbox_.OnRequest(r); }),
-      chunk_subscriber_(hub, [this](const TransitionChunk& c) { inbox_.OnChunk(c); }) {
-  core_.SetGatherers(
-      [this](int parts, const std::function<void(int)>& part) { gatherers_.Run(parts, part); });
-}
+      chunk_subscriber_(hub, [this](const TransitionChunk& c) { inbox_.OnChunk(c); }) {}
 
 int ReplayService::Run() {
   const Ring& ring = core_.ring();
@@ -126,9 +125,9 @@ void ReplayService::ReportStarting() {
 
 void ReplayService::Turn() {
   const bool inserts_blocked = core_.InsertsBlocked(), samples_blocked = core_.SamplesBlocked();
-  // After an answer another batch may be ready to draw, so this turn does not wait.
-  Take(WaitForArrivals(answered_ ? Now() : Now() + (credits_wait_ ? kCreditSpacing : kPoll)));
-  AnswerOne();
+  Take(WaitForArrivals());
+  Answer();
+  WorkOnBatches();
   const SteadyTime now = Now();
   TellChangedCredits(now);
   const double elapsed = std::chrono::duration<double>(now - last_turn_).count();
@@ -176,49 +175,76 @@ void ReplayService::ApplySettings() {
   core_.SetSamplesPerInsert(values.samples_per_insert);
 }
 
-ServiceInbox::Arrivals ReplayService::WaitForArrivals(SteadyTime deadline) {
-  const ScopedSeconds timed(seconds_.idle);
-  return inbox_.Wait(deadline);
+ServiceInbox::Arrivals ReplayService::WaitForArrivals() {
+  // A batch that other threads copy counts as sampling, as if this thread copied it.
+  const ScopedSeconds timed(in_work_.empty() ? seconds_.idle : seconds_.sampling);
+  if (gatherers_.HasWork()) return inbox_.Wait(Now());
+  return inbox_.Wait(Now() + (credits_wait_ ? kCreditSpacing : kPoll));
 }
 
 void ReplayService::Take(ServiceInbox::Arrivals arrivals) {
   const ScopedSeconds timed(seconds_.inserting);
   for (std::unique_ptr<PooledChunk>& pooled : arrivals.chunks) {
-    const ChunkResult result = core_.TakeChunk(pooled->chunk, session_clock_.Latest(WallTimeNs()));
-    problems_.Note(pooled->chunk, result);
-    report_.NoteQueueAge(SecondsSince(pooled->arrived));
-    if (result.fate == ChunkFate::kDealtWith) ages_.OnChunk(pooled->chunk, WallTimeNs());
-    if (result.fate == ChunkFate::kWrongSpec || result.fate == ChunkFate::kSuperseded) {
-      Publish({core_.Refusal(pooled->chunk)});
-    }
-    if (pooled->chunk.count > 0) last_chunk_ = Now();
+    TakeChunk(*pooled);
     inbox_.Release(std::move(pooled));
   }
-  for (const SampleRequest& request : arrivals.requests) {
-    const RequestFate fate = core_.TakeRequest(request);
-    if (fate == RequestFate::kWrongSpec || fate == RequestFate::kWrongSchema) {
-      problems_.NoteRefused(request);
-      continue;
-    }
-    if (fate == RequestFate::kQueued || fate == RequestFate::kAlreadyQueued) {
-      ages_.OnRequest(request);
-    }
-    if (fate != RequestFate::kStale) slots_.OnRequest(request);
-  }
+  for (const SampleRequest& request : arrivals.requests) TakeRequest(request);
   sender_.SetLearnerSession(core_.requests().learner_session());
 }
 
-void ReplayService::AnswerOne() {
-  SlotWriter* slots = slots_.writer();
-  answered_ = slots != nullptr ? AnswerInSlot(*slots) : AnswerInBuffer();
+void ReplayService::TakeChunk(const PooledChunk& pooled) {
+  const TransitionChunk& chunk = pooled.chunk;
+  // The records of the chunk overwrite the oldest records, which batches may still copy.
+  const uint64_t last = core_.ring().last_id() + chunk.count, capacity = core_.ring().capacity();
+  if (last > capacity) in_work_.FinishReadersUpTo(last - capacity);
+  const ChunkResult result = core_.TakeChunk(chunk, session_clock_.Latest(WallTimeNs()));
+  problems_.Note(chunk, result);
+  report_.NoteQueueAge(SecondsSince(pooled.arrived));
+  if (result.fate == ChunkFate::kDealtWith) ages_.OnChunk(chunk, WallTimeNs());
+  if (result.fate == ChunkFate::kWrongSpec || result.fate == ChunkFate::kSuperseded) {
+    Publish({core_.Refusal(chunk)});
+  }
+  if (chunk.count > 0) last_chunk_ = Now();
+}
+
+void ReplayService::TakeRequest(const SampleRequest& request) {
+  const RequestFate fate = core_.TakeRequest(request);
+  if (fate == RequestFate::kWrongSpec || fate == RequestFate::kWrongSchema) {
+    return problems_.NoteRefused(request);
+  }
+  if (fate == RequestFate::kQueued || fate == RequestFate::kAlreadyQueued) {
+    ages_.OnRequest(request);
+  }
+  if (fate == RequestFate::kStale) return;
+  if (slots_.GivesUp(request)) {
+    // Nothing may write to the slots when their memory is gone.
+    in_work_.Finish();
+    AnnounceComplete();
+  }
+  slots_.OnRequest(request);
+}
+
+void ReplayService::Answer() {
+  const auto answer = [this] {
+    SlotWriter* slots = slots_.writer();
+    return slots != nullptr ? AnswerInSlot(*slots) : AnswerInBuffer();
+  };
+  while (answer()) {
+  }
 }
 
 bool ReplayService::AnswerInBuffer() {
   uint8_t* buffer = sender_.FreeBuffer();
   if (buffer == nullptr) return false;
-  const std::optional<DrawnBatch> batch = Draw(buffer);
-  if (batch) sender_.Send(*batch, buffer);
-  return batch.has_value();
+  std::optional<BegunBatch> begun = Draw(buffer);
+  if (!begun) return false;
+  const DrawnBatch batch = begun->batch;
+  const ScopedSeconds timed(seconds_.sampling);
+  in_work_.Add(*std::move(begun));
+  in_work_.Finish();
+  in_work_.TakeComplete();
+  sender_.Send(batch, buffer);
+  return true;
 }
 
 bool ReplayService::AnswerInSlot(SlotWriter& slots) {
@@ -229,21 +255,41 @@ bool ReplayService::AnswerInSlot(SlotWriter& slots) {
     sender_.Send(*held);
     return true;
   }
+  if (again && in_work_.Has(again->request)) {
+    core_.AnsweredAgain();  // its slot is announced when it is full
+    return true;
+  }
   uint8_t* slot = slots.FreeSlot();
   if (slot == nullptr) return false;
-  const std::optional<DrawnBatch> batch = Draw(slot);
-  if (!batch) return false;
-  sender_.Send(slots.Fill(batch->request.request, batch->stored_records, batch->stored_steps,
-                          batch->unsampleable_steps));
-  report_.NoteSlotBatch();
+  std::optional<BegunBatch> begun = Draw(slot);
+  if (!begun) return false;
+  slots.Reserve(begun->batch.request.request);
+  in_work_.Add(*std::move(begun));
   return true;
 }
 
-std::optional<DrawnBatch> ReplayService::Draw(uint8_t* data) {
+std::optional<BegunBatch> ReplayService::Draw(uint8_t* data) {
   const ScopedSeconds timed(seconds_.sampling);
-  const std::optional<DrawnBatch> batch = core_.TryAnswer(data);
-  if (batch) ages_.OnBatch(core_.last_plan(), core_.ring(), WallTimeNs());
-  return batch;
+  std::optional<BegunBatch> begun = core_.BeginAnswer(data);
+  if (begun) ages_.OnBatch(core_.last_plan(), core_.ring(), WallTimeNs());
+  return begun;
+}
+
+void ReplayService::WorkOnBatches() {
+  if (in_work_.empty()) return;
+  const ScopedSeconds timed(seconds_.sampling);
+  gatherers_.Help();
+  AnnounceComplete();
+}
+
+void ReplayService::AnnounceComplete() {
+  SlotWriter* slots = slots_.writer();
+  for (const DrawnBatch& batch : in_work_.TakeComplete()) {
+    CHECK(slots != nullptr) << "request " << batch.request.request;
+    sender_.Send(slots->Fill(batch.request.request, batch.stored_records, batch.stored_steps,
+                             batch.unsampleable_steps));
+    report_.NoteSlotBatch();
+  }
 }
 
 void ReplayService::Publish(const std::vector<Credit>& credits) {
@@ -253,9 +299,10 @@ void ReplayService::Publish(const std::vector<Credit>& credits) {
 void ReplayService::ChooseGatherers(SteadyTime now) {
   if (Settings().replay.threads > 0 || now - last_choice_ < kChoiceSpacing) return;
   const double seconds = std::chrono::duration<double>(now - last_choice_).count();
-  const double share = (seconds_.sampling - sampling_then_) / seconds;
+  const double copying = gatherers_.seconds();
+  const double share = (copying - copying_then_) / (seconds * gatherers_.threads());
   last_choice_ = now;
-  sampling_then_ = seconds_.sampling;
+  copying_then_ = copying;
   gatherers_.Resize(GatherThreadsFor(share, gatherers_.threads(), most_gatherers_));
 }
 

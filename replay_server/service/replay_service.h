@@ -25,6 +25,7 @@
 #include "common/wire/process_name.h"
 #include "replay_server/core/replay_core.h"
 #include "replay_server/service/batch_sender.h"
+#include "replay_server/service/batches_in_work.h"
 #include "replay_server/service/flow_ages.h"
 #include "replay_server/service/gather_threads.h"
 #include "replay_server/service/hub_part_writer.h"
@@ -62,8 +63,8 @@ class ReplayService {
   // reports would be treated as hung.
   void ReportStarting();
 
-  // One turn of the service: handles arrivals, answers one request, sends changed credits and
-  // progress.
+  // One turn of the service: handles arrivals, answers requests, copies frames, sends changed
+  // credits and progress.
   void Turn();
 
   void TellChangedCredits(SteadyTime now);
@@ -73,22 +74,30 @@ class ReplayService {
 
   void ApplySettings();
 
-  ServiceInbox::Arrivals WaitForArrivals(SteadyTime deadline);
+  ServiceInbox::Arrivals WaitForArrivals();
 
   void Take(ServiceInbox::Arrivals arrivals);
+  void TakeChunk(const PooledChunk& pooled);
+  void TakeRequest(const SampleRequest& request);
 
-  void AnswerOne();
+  // Draws the batches of all requests that can be answered now. Batches for slots are then in work.
+  void Answer();
 
+  // Answers one request. Returns false if none can be answered now.
   bool AnswerInBuffer();
-
   bool AnswerInSlot(SlotWriter& slots);
 
-  std::optional<DrawnBatch> Draw(uint8_t* data);
+  // Draws a batch and writes all but its frames to `data`.
+  std::optional<BegunBatch> Draw(uint8_t* data);
+
+  // Copies a part of the frames, if parts wait. Announces the batches in slots that are complete.
+  void WorkOnBatches();
+  void AnnounceComplete();
 
   void Publish(const std::vector<Credit>& credits);
 
-  // If replay.threads = 0, chooses the number of gather threads for the next second from the load
-  // of the last second.
+  // If replay.threads = 0, chooses the number of gather threads for the next interval from the load
+  // of the last interval.
   void ChooseGatherers(SteadyTime now);
 
   void Report(const char* state);
@@ -109,7 +118,6 @@ class ReplayService {
   const RunAccount before_;
   ReplayCore core_;
   SessionClock session_clock_;
-  GatherThreads gatherers_;
   const int most_gatherers_;
   ControlState control_;
   ServiceInbox inbox_;
@@ -120,6 +128,8 @@ class ReplayService {
   HubPartWriter part_writer_;
   BatchSender sender_;
   LearnerSlots slots_;
+  GatherThreads gatherers_;  // after what its threads use: core, inbox, buffers and slots
+  BatchesInWork in_work_;
   ServiceReport report_;
   link::Reader<ControlMessage> control_subscriber_;
   link::Reader<SampleRequest> request_subscriber_;
@@ -129,12 +139,11 @@ class ReplayService {
   ServiceSeconds seconds_;
   SteadyTime last_turn_{}, last_credits_{}, last_chunk_{};
   SteadyTime last_choice_{};  // time of the last ChooseGatherers
-  double sampling_then_ = 0;  // seconds_.sampling at the time last_choice_
+  double copying_then_ = 0;   // gatherers_.seconds() at the time last_choice_
   SteadyTime last_told_{};
   std::optional<SteadyTime> progress_told_;
   uint64_t told_records_ = 0;
   bool credits_wait_ = false;  // changed credits are being collected before they are sent
-  bool answered_ = false;      // the last turn answered a request, so another request may be due
 };
 
 }  // namespace shoal::replay

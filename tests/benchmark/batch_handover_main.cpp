@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // shoal-bench-batches: cost of passing a batch from replay to learner, through shared memory and
 // over the network of one host, as JSON (schema shoal-bench-1) on stdout. `./run bench-batches`.
+// With --drawn: how many batches a second the replay server draws for a learner that does nothing
+// else than request them, as one line.
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "common/base/build_info.h"
 #include "common/base/main_guard.h"
+#include "launch/processes/scratch_folder.h"
 #include "launch/record/machine.h"
 #include "tests/benchmark/batch_handover.h"
+#include "tests/benchmark/drawn_batches.h"
 
 namespace {
 
@@ -59,8 +64,22 @@ nlohmann::ordered_json Row(const std::vector<HandoverFigures>& all_shared,
           {"against_learner_seconds_per_gb", network.learner_seconds / network.gigabytes}};
 }
 
+int MeasureRate(shoal::bench::DrawnOptions options) {
+  const shoal::launch::ScratchFolder folder(std::filesystem::current_path());
+  options.folder = folder.path();
+  const shoal::bench::DrawnFigures figures = shoal::bench::MeasureDrawn(options);
+  fmt::print(
+      "{:.0f} batches/s; CPU per batch: replay {:.3f} ms, learner {:.3f} ms (batch {}, {} records, "
+      "learner.request_credits={}, replay.threads={})\n",
+      figures.batches_per_second, 1e3 * figures.replay_seconds, 1e3 * figures.learner_seconds,
+      options.batch, options.records, options.credits, options.threads);
+  return 0;
+}
+
 int Run(int argc, char** argv) {
   HandoverOptions options;
+  shoal::bench::DrawnOptions drawn;
+  bool draws = false;
   int repetitions = 3;
   CLI::App app("Measures what handing batches over costs.");
   app.add_option("--batch", options.batch, "of two 84x84 RGB cameras")->check(CLI::Range(1, 4096));
@@ -68,7 +87,14 @@ int Run(int argc, char** argv) {
       ->check(CLI::Range(1, 100'000));
   app.add_option("--repetitions", repetitions, "of both ways in turn; the median counts")
       ->check(CLI::Range(1, 100));
+  app.add_flag("--drawn", draws, "measure the rate of drawn batches instead; it takes:");
+  app.add_option("--records", drawn.records, "of the ring")->check(CLI::Range(200, 1'000'000));
+  app.add_option("--credits", drawn.credits, "learner.request_credits")->check(CLI::Range(1, 64));
+  app.add_option("--threads", drawn.threads, "replay.threads")->check(CLI::Range(0, 64));
+  app.add_option("--seconds", drawn.seconds, "of the measurement")->check(CLI::Range(0.1, 100.0));
   CLI11_PARSE(app, argc, argv);
+  drawn.batch = options.batch;
+  if (draws) return MeasureRate(drawn);
   std::vector<HandoverFigures> shared, network;
   for (int i = 0; i < repetitions; ++i) {
     for (const bool way : {true, false}) {

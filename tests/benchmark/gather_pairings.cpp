@@ -72,11 +72,13 @@ class FullReplay {
   }
 
   // Draws a batch and gathers it, shifted.
-  void Draw(const replay::RunParts& run = nullptr) {
+  void Draw(replay::GatherThreads* threads = nullptr) {
     const auto plan =
         DrawPlan({.batch = kBatch, .copies = 1, .shift_pad = kPad}, &selector_, nullptr, &random_);
     CHECK(plan.has_value());
-    gather_.Gather(*plan, batch_.batch, run);
+    if (threads == nullptr) return gather_.Gather(*plan, batch_.batch);
+    const replay::FrameCopies copies = gather_.GatherAllButFrames(*plan, batch_.batch);
+    threads->Finish(threads->Start(copies.parts(), [&](int part) { copies.MakePart(part); }));
   }
 
   // Copies as many frames as a batch holds from anywhere in the ring to where the batch goes.
@@ -147,12 +149,7 @@ std::vector<Pairing> ThreadPairings(const std::shared_ptr<Replays>& replays,
         {.stage = fmt::format("{}, of {} records, by {} threads", drawn, kFew, threads),
          .unit = "batches/s",
          .against = "one thread",
-         .ours =
-             [replays, gatherers] {
-               replays->Few().Draw([&](int parts, const std::function<void(int)>& part) {
-                 gatherers->Run(parts, part);
-               });
-             },
+         .ours = [replays, gatherers] { replays->Few().Draw(gatherers.get()); },
          .other = [replays] { replays->Few().Draw(); }});
     if (threads == 2) pairings.back().target = kTwoThreadsTarget;
     if (threads > UsableCores()) pairings.back().skipped = "too few cores";

@@ -81,6 +81,27 @@ TEST_F(BatchSlotsTest, ASlotIsWrittenAgainOnlyOnceItIsReleased) {
   EXPECT_EQ(writer_.held(), 0u);
 }
 
+TEST_F(BatchSlotsTest, SeveralSlotsAreWrittenAtOneTimeAndFilledInAnyOrder) {
+  uint8_t* const first = writer_.FreeSlot();
+  writer_.Reserve(1);
+  uint8_t* const second = writer_.FreeSlot();
+  writer_.Reserve(2);
+  EXPECT_NE(first, second);
+  EXPECT_EQ(writer_.held(), 2u);
+  EXPECT_FALSE(writer_.Held(1)) << "it is not full yet";
+  writer_.Release(9);
+  EXPECT_EQ(writer_.held(), 2u) << "a slot that is still written cannot be released";
+  first[0] = 0x11;
+  second[0] = 0x22;
+  const BatchSlot late = writer_.Fill(2, 100, 90), early = writer_.Fill(1, 100, 90);
+  const SlotReader reader = Reader();
+  EXPECT_EQ(reader.Batch(early.slot, 1)[0], 0x11);
+  EXPECT_EQ(reader.Batch(late.slot, 2)[0], 0x22);
+  EXPECT_TRUE(writer_.Held(1) && writer_.Held(2));
+  writer_.Release(2);
+  EXPECT_EQ(writer_.held(), 0u);
+}
+
 TEST_F(BatchSlotsTest, WhatIsHeldIsSaidAgainInTheSameWords) {
   const BatchSlot word = Fill(5);
   const auto again = writer_.Held(5);

@@ -56,7 +56,7 @@ class BatchGatherTest : public testing::Test {
     const BatchView view = schema_->View(memory_.data());
     const EpisodeIndex index(*ring_, {.stack = spec_.stack, .n_step = n_step.steps});
     BatchGather(*ring_, index, spec_, n_step, nullptr, schema_->options().privileged)
-        .Gather(plan, view, run_parts_);
+        .Gather(plan, view);
     return view;
   }
 
@@ -89,7 +89,6 @@ class BatchGatherTest : public testing::Test {
   std::vector<std::vector<uint8_t>> records_;
   std::optional<BatchSchema> schema_;
   AlignedBytes memory_;
-  RunParts run_parts_;  // of the next Gather
 };
 
 TEST_F(BatchGatherTest, AStackAtAnEpisodesStartRepeatsTheFirstFrame) {
@@ -110,11 +109,11 @@ TEST_F(BatchGatherTest, OneShiftHoldsForAllFramesAndChannelsOfAStackAndAnotherFo
   EXPECT_EQ(Bytes(view.next_obs_frames), Stack({2, 3}, next));
 }
 
-// Parts in another order, as threads may run them, and a batch that they do not divide evenly.
-TEST_F(BatchGatherTest, TheBytesDoNotDependOnHowTheElementsAreShared) {
-  Fill(TinySpec(2, 9, 7), kTerminated);
+// Parts in another order, as threads may run them, and copies that they do not divide evenly.
+TEST_F(BatchGatherTest, TheBytesDoNotDependOnHowTheFramesAreShared) {
+  Fill(TinySpec(2, 90, 70), kTerminated);
   BatchPlan plan;
-  for (int b = 0; b < 4 * BatchGather::kElementsOfPart + 3; ++b) {
+  for (int b = 0; b < 27; ++b) {
     plan.elements.push_back({.id = uint64_t(2 + b % 4),
                              .obs = {.dx = b % 5 - 2, .dy = b % 3 - 1},
                              .next_obs = {.dx = b % 4 - 2, .dy = b % 7 - 3}});
@@ -124,13 +123,16 @@ TEST_F(BatchGatherTest, TheBytesDoNotDependOnHowTheElementsAreShared) {
   const auto bytes = [&](const AlignedBytes& memory) {
     return std::vector<uint8_t>(memory.data(), memory.data() + schema_->total_bytes());
   };
-  int parts_run = 0;
-  run_parts_ = [&](int parts, const std::function<void(int)>& part) {
-    parts_run = parts;
-    for (int i = parts - 1; i >= 0; --i) part(i);
-  };
-  Gather(plan, {.steps = 2, .discount = 0.5});
-  EXPECT_EQ(parts_run, 5);
+  memory_ = AlignedBytes(schema_->total_bytes());
+  std::fill_n(memory_.data(), schema_->total_bytes(), uint8_t{0});
+  const EpisodeIndex index(*ring_, {.stack = spec_.stack, .n_step = 2});
+  const FrameCopies copies = BatchGather(*ring_, index, spec_, {.steps = 2, .discount = 0.5})
+                                 .GatherAllButFrames(plan, schema_->View(memory_.data()));
+  EXPECT_EQ(copies.copies.size(), 27u * 4);
+  EXPECT_EQ(copies.oldest, 1u);
+  EXPECT_NE(bytes(memory_), bytes(alone)) << "no frame is copied yet";
+  ASSERT_GE(copies.parts(), 3);
+  for (int part = copies.parts() - 1; part >= 0; --part) copies.MakePart(part);
   EXPECT_EQ(bytes(memory_), bytes(alone));
 }
 

@@ -49,6 +49,21 @@ TEST_F(LearnerSlotsTest, ALearnerThatTakesThemGetsThemAndGivesThemBack) {
   EXPECT_NE(slots_.writer()->FreeSlot(), nullptr);
 }
 
+TEST_F(LearnerSlotsTest, ItIsKnownBeforehandWhichRequestGivesTheSlotsUp) {
+  EXPECT_FALSE(slots_.GivesUp(Request(5, 1))) << "there are none";
+  slots_.OnRequest(Request(5, 1));
+  EXPECT_FALSE(slots_.GivesUp(Request(5, 2)));
+  EXPECT_FALSE(slots_.GivesUp(Request(4, 1))) << "a former learner changes nothing";
+  EXPECT_TRUE(slots_.GivesUp(Request(6, 1)));
+  SampleRequest refusal = Request(5, 1);
+  refusal.refused_token = 12345;  // of a replay before
+  EXPECT_FALSE(slots_.GivesUp(refusal));
+  refusal.refused_token = slots_.writer()->address().token[0];
+  EXPECT_TRUE(slots_.GivesUp(refusal));
+  refusal.learner_session = 4;
+  EXPECT_FALSE(slots_.GivesUp(refusal));
+}
+
 TEST_F(LearnerSlotsTest, ALearnerThatTakesNoneGetsNone) {
   SampleRequest request = Request(5, 1);
   request.takes_slots = false;

@@ -38,6 +38,7 @@ class ReplayPeers {
                    for (const Credit& credit : m.credits) OnCredit(credit);
                  }),
         parts_(bus_, [this](const BatchPart& part) { OnPart(part); }),
+        slots_(bus_, [this](const BatchSlot& slot) { OnSlot(slot); }),
         metrics_(bus_, [this](const ReplayMetrics& m) { OnMetrics(m); }) {}
 
   // Sends a heartbeat if the last is old enough. All waits below also send heartbeats, unless
@@ -126,6 +127,24 @@ class ReplayPeers {
     return {};
   }
 
+  // Requests a batch in shared memory, and releases the slots of earlier requests up to `released`.
+  void RequestSlot(uint64_t request, uint64_t released) {
+    requests_.Write({.spec_hash = run_.spec.Hash(),
+                     .learner_session = 6,
+                     .request = request,
+                     .batch = static_cast<uint32_t>(run_.config.learner.batch),
+                     .after_steps = 0,
+                     .schema_hash = BatchSchemaOf(run_).Hash(),
+                     .released = released,
+                     .takes_slots = true});
+  }
+  // Waits for the slot of a request. Empty if it does not arrive.
+  std::optional<BatchSlot> WaitForSlot(uint64_t request) {
+    if (!WaitFor([&] { return filled_.contains(request); })) return std::nullopt;
+    const std::lock_guard lock(mutex_);
+    return filled_.at(request);
+  }
+
   Credit LastCredit(uint32_t actor) {
     const std::lock_guard lock(mutex_);
     return credit_[actor];
@@ -168,6 +187,11 @@ class ReplayPeers {
     missing_parts_->erase(part.part);
     changed_.notify_all();
   }
+  void OnSlot(const BatchSlot& slot) {
+    const std::lock_guard lock(mutex_);
+    filled_[slot.request] = slot;
+    changed_.notify_all();
+  }
   void OnMetrics(const ReplayMetrics& message) {
     const std::lock_guard lock(mutex_);
     if (message.role != "replay") return;
@@ -184,6 +208,7 @@ class ReplayPeers {
   std::vector<uint8_t> batch_;
   uint64_t wanted_ = 0;
   std::optional<std::set<uint32_t>> missing_parts_;
+  std::map<uint64_t, BatchSlot> filled_;  // by request
   std::map<std::string, double> newest_metrics_;
   SteadyTime last_beat_{};
 
@@ -193,6 +218,7 @@ class ReplayPeers {
   link::Writer<SampleRequest> requests_;
   link::Reader<CreditsMessage> credits_;
   link::Reader<BatchPart> parts_;
+  link::Reader<BatchSlot> slots_;
   link::Reader<ReplayMetrics> metrics_;
 };
 

@@ -12,6 +12,7 @@
 #include "common/base/aligned_bytes.h"
 #include "common/config/batch_options.h"
 #include "common/run_folder/run_file_names.h"
+#include "common/wire/batch_slots.h"
 #include "replay_server/core/replay_core.h"
 #include "tests/replay_server/service/replay_peers.h"
 #include "tests/replay_server/service/replay_process.h"
@@ -80,6 +81,26 @@ class ReplayServiceTest : public testing::Test {
     }
   }
 
+  // The newest frames of each sample are those of the records of `script` that its id names. The
+  // script has one environment, so a record follows the last.
+  void ExpectFramesOfTheirIds(RecordScript* script, const BatchSlot& slot) {
+    const BatchSchema schema = BatchSchemaOf(run_);
+    const SlotReader reader(slot.address, slot.learner_session, schema.total_bytes());
+    const BatchView view = schema.View(reader.Batch(slot.slot, slot.request));
+    const RecordLayout layout(run_.spec);
+    const auto frame_bytes = static_cast<size_t>(layout.frame_bytes());
+    const auto shows = [&](std::span<const uint8_t> stacks, size_t element, uint64_t sequence) {
+      const size_t newest = 2 * element + 1;
+      const std::vector<uint8_t>& record = script->At(sequence);
+      return std::ranges::equal(stacks.subspan(newest * frame_bytes, frame_bytes),
+                                layout.Frame(record.data()));
+    };
+    for (size_t b = 0; b < view.id.size(); ++b) {
+      ASSERT_TRUE(shows(view.obs_frames, b, view.id[b] - 1)) << "before record " << view.id[b];
+      ASSERT_TRUE(shows(view.next_obs_frames, b, view.id[b])) << "record " << view.id[b];
+    }
+  }
+
   RunConfig run_;
   ClusterAddress address_;
   TemporaryFolder folder_;
@@ -130,6 +151,28 @@ TEST_F(ReplayServiceTest, CopiesWithTheThreadsThatTheRunAsksFor) {
     return metrics.contains("sampled") && metrics.at("sampled") == 128 &&
            metrics.at("gather_threads") == 3;
   }));
+  StopReplay();
+}
+
+// Records are stored while threads copy, and overwrite the oldest records of a small ring.
+TEST_F(ReplayServiceTest, CopiesNoRecordThatIsOverwrittenMeanwhile) {
+  run_.config.replay.threads = 3;
+  run_.config.replay.capacity = 150;
+  run_.config.transport.chunk_records = 24;
+  WriteRunConfig(folder_.path(), run_);
+  StartAll();
+  RecordScript script(run_.spec, 0, 10, /*envs=*/1);
+  uint64_t stored = 150;
+  ASSERT_TRUE(peers_->Deliver(&script, stored)) << replay_->Errors();
+  for (uint64_t request = 1; request <= 60; request += 3) {
+    for (uint64_t i = 0; i < 6; ++i) peers_->RequestSlot(request + i / 2, request - 1);  // twice
+    ASSERT_TRUE(peers_->Deliver(&script, stored += 60)) << replay_->Errors();
+    for (uint64_t i = 0; i < 3; ++i) {
+      const std::optional<BatchSlot> slot = peers_->WaitForSlot(request + i);
+      ASSERT_TRUE(slot) << replay_->Errors();
+      ASSERT_NO_FATAL_FAILURE(ExpectFramesOfTheirIds(&script, *slot));
+    }
+  }
   StopReplay();
 }
 
