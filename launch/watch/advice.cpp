@@ -15,6 +15,8 @@ namespace {
 
 // Shares of the time above which a process counts as held back, or as always busy.
 constexpr double kHeld = 0.2, kBusy = 0.8;
+// Share of the time in which the replay server works above which its work delays batches.
+constexpr double kOftenBusy = 0.5;
 constexpr double kAllCores = 0.9;  // share of busy usable cores above which no core is spare
 constexpr double kServers = 1;     // cores of replay server and evaluation if not measured
 // Least predicted speed-up worth advising. Smaller ones are within the error of the prediction.
@@ -139,6 +141,24 @@ std::string DescribeBusyReplay(const Bottleneck& figures) {
       100 * ShareOf(figures, "replay", "sending"));
 }
 
+// Whether the learner often waits for batches that the limiter does not withhold. Then the actors
+// wait, too, but more learning would not help.
+bool WaitsForGrantedBatches(const Bottleneck& figures) {
+  return ShareOf(figures, "learner", "waiting_data") - figures.samples_blocked >= kHeld;
+}
+
+std::string AdviseFasterBatches(const Bottleneck& figures, double replay_works) {
+  const std::string waits = fmt::format(
+      "The learner waits for batches {:.0f} % of the time, though the limiter grants them",
+      100 * ShareOf(figures, "learner", "waiting_data"));
+  if (replay_works < kOftenBusy) return waits + ": raise learner.request_credits.";
+  return fmt::format(
+      "{}: the replay server sets the pace ({:.0f} % inserting, {:.0f} % sampling); raise "
+      "replay.threads or learner.request_credits.",
+      waits, 100 * ShareOf(figures, "replay", "inserting"),
+      100 * ShareOf(figures, "replay", "sampling"));
+}
+
 std::string DescribeBalance(const Bottleneck& figures) {
   const StageShare* stage = Largest(figures, "learner", kLearning);
   return fmt::format(
@@ -161,13 +181,8 @@ std::string Advise(const Bottleneck& figures, const RunResources& resources) {
   if (figures.samples_blocked >= kHeld && figures.samples_blocked >= figures.inserts_blocked) {
     return AdviseMoreActing(figures, resources);
   }
+  if (WaitsForGrantedBatches(figures)) return AdviseFasterBatches(figures, replay_works);
   if (figures.inserts_blocked >= kHeld) return AdviseMoreLearning(figures, resources);
-  if (const double waits = ShareOf(figures, "learner", "waiting_data"); waits >= kHeld) {
-    return fmt::format(
-        "The learner waits for batches {:.0f} % of the time, though the limiter grants them: raise "
-        "learner.request_credits.",
-        100 * waits);
-  }
   if (const double wait = ShareOf(figures, "actor", "waiting_credit"); wait >= kHeld) {
     return fmt::format(
         "The actors wait for credit {:.0f} % of the time, though the limiter grants it: raise "

@@ -214,10 +214,28 @@ TEST(Advice, ActorsOfOtherHostsAreThoseOfTheHostsFile) {
 TEST(Advice, WaitsWithoutTheLimiterAreTheTransports) {
   Bottleneck figures = Balanced();
   SetShare(&figures, "learner", "waiting_data", 0.3);
-  EXPECT_THAT(Advise(figures, WithActors(2)), HasSubstr("learner.request_credits"));
+  EXPECT_THAT(Advise(figures, WithActors(2)),
+              AllOf(HasSubstr("raise learner.request_credits"), Not(HasSubstr("replay.threads"))));
   figures = Balanced();
   SetShare(&figures, "actor", "waiting_credit", 0.3);
   EXPECT_THAT(Advise(figures, WithActors(2)), HasSubstr("replay.window_chunks"));
+}
+
+// The shares of a measured run with a GPU: the actors wait because the learner waits for batches.
+TEST(Advice, ALearnerThatWaitsForGrantedBatchesDoesNotSetThePace) {
+  Bottleneck figures = Balanced();
+  figures.inserts_blocked = 0.65;
+  figures.samples_blocked = 0.01;
+  SetShare(&figures, "learner", "waiting_data", 0.42);
+  SetShare(&figures, "replay", "inserting", 0.15);
+  SetShare(&figures, "replay", "sampling", 0.58);
+  EXPECT_THAT(Advise(figures, WithActors(2)),
+              AllOf(HasSubstr("learner waits for batches 42 %"),
+                    HasSubstr("the replay server sets the pace (15 % inserting, 58 % sampling)"),
+                    HasSubstr("raise replay.threads"), Not(HasSubstr("learner sets the pace"))));
+  SetShare(&figures, "learner", "waiting_data", 0.2);
+  EXPECT_THAT(Advise(figures, WithActors(2)), HasSubstr("The learner sets the pace"))
+      << "without the limiter's share, the learner waits less than 20 %";
 }
 
 TEST(Advice, ABusyReplayIsNamedBeforeAnybodyWhoWaitsForIt) {
