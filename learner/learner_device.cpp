@@ -75,24 +75,7 @@ std::unique_ptr<Agent> LearnerDevice::MakeAgent(const RunConfig& run) {
       [&] { return device::MakeDeviceAgent(run.config, run.spec, precision_, device_.get()); });
 }
 
-PinMemory LearnerDevice::Pin() {
-  if (!on_gpu()) return {};
-  return [this](std::span<const uint8_t> memory) -> std::shared_ptr<const void> {
-    if (!device_->RegisterHost(memory.data(), int64_t(memory.size()))) {
-      if (!std::exchange(said_unpinned_, true)) {
-        log::Warning("{} cannot pin the memory of batches: copying them takes longer",
-                     device_->info().name);
-      }
-      return nullptr;
-    }
-    return {memory.data(), [this](const uint8_t* pinned) {
-              try {
-                device_->UnregisterHost(pinned);
-              } catch (const Error&) {  // of a lost GPU, which pins nothing
-              }
-            }};
-  };
-}
+PinMemory LearnerDevice::Pin() { return on_gpu() ? PinOn(device_.get()) : PinMemory{}; }
 
 std::optional<CardUse> LearnerDevice::Look() const { return card_ ? card_->Look() : std::nullopt; }
 

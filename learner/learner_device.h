@@ -67,7 +67,6 @@ class LearnerDevice {
   nn::Precision precision_;
   std::optional<OpenedCard> card_;
   std::unique_ptr<device::Device> device_;
-  bool said_unpinned_ = false;
 };
 
 // Whether a learner of this host would compute on a GPU: learner.device is cuda, or it is auto and

@@ -65,6 +65,15 @@ ProgramResult Train(const TrainingRun& run, const std::string& device,
   return RunCommand(command, kGpuDeadline, environment);
 }
 
+// Lines of the learner's log that say that memory cannot be pinned.
+int TimesPinningFailed(const TrainingRun& run) {
+  const std::string log = ReadFile(run.path() / "logs" / "learner-0.log");
+  const std::string line = "Fake GPU cannot pin the memory of batches";
+  int times = 0;
+  for (size_t at = log.find(line); at != std::string::npos; at = log.find(line, at + 1)) ++times;
+  return times;
+}
+
 TEST(Gpu, ABuildWithoutCudaSaysWhatIsMissing) {
   const std::string library = ProgramPath("libshoal-cuda.so");
   const bool built = std::filesystem::exists(library);
@@ -99,6 +108,7 @@ TEST(Gpu, ARunOnAGpuNamesItInItsFilesAndReports) {
   const ProgramResult result = Train(run, "cuda", FakeGpu("works"));
   ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
   EXPECT_THAT(result.out, HasSubstr("the learner computes on Fake GPU (2 GB, driver 1.2.3)"));
+  EXPECT_EQ(TimesPinningFailed(run), 0);
   const nlohmann::json meta = run.Json("meta.json");
   EXPECT_EQ(meta.at("learner_device").at("device"), "cuda");
   EXPECT_EQ(meta.at("learner_device").at("card"), "Fake GPU");
@@ -108,6 +118,13 @@ TEST(Gpu, ARunOnAGpuNamesItInItsFilesAndReports) {
   const std::string metrics = ReadFile(run.path() / "metrics.jsonl");
   EXPECT_THAT(metrics, AllOf(HasSubstr("\"card_busy\":0.25"), HasSubstr("\"card_memory_mb\":1000"),
                              HasSubstr("\"card_memory_size_mb\":")));
+}
+
+TEST(Gpu, AGpuThatCannotPinMemoryLearnsAndSaysSoOnce) {
+  const TrainingRun run;
+  const ProgramResult result = Train(run, "cuda", FakeGpu("pins nothing"));
+  ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
+  EXPECT_EQ(TimesPinningFailed(run), 1);
 }
 
 TEST(Gpu, PpoLearnsOnAGpuAndGoesOnOnTheCpu) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <condition_variable>
 #include <deque>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <stdexcept>
@@ -299,8 +300,8 @@ TEST_F(BatchSourceTest, PinsTheMemoryOfAssembledBatchesAtItsFirstUse) {
               1)
         << request;
   }
-  EXPECT_LE(pin.given.size(), size_t(run_.config.learner.request_credits + 1));
-  EXPECT_EQ(pin.pinned, int(pin.given.size()));
+  EXPECT_LE(pin.given.size(), static_cast<size_t>(run_.config.learner.request_credits + 1));
+  EXPECT_EQ(pin.pinned, std::ssize(pin.given));
   source_.reset();
   EXPECT_EQ(pin.pinned, 0);
 }

@@ -5,6 +5,7 @@
 //   works            a GPU
 //   refuses          no usable GPU: "the fake GPU is taken"
 //   another build    a library of another version
+//   pins nothing     a GPU that cannot pin the host's memory
 //   is lost after N  a GPU that fails after N replays or runs of commands
 #include <cstdint>
 #include <cstdlib>
@@ -28,7 +29,8 @@ using device::Recording;
 // Passes everything to a device of the host, until it is lost.
 class FakeGpu final : public Device {
  public:
-  explicit FakeGpu(int64_t work) : work_left_(work) {}
+  FakeGpu(int64_t work, bool pins)
+      : host_(new device::HostDevice({.registers = pins})), work_left_(work) {}
 
   const DeviceInfo& info() const override { return info_; }
   int64_t FreeMemory() const override { return Host().FreeMemory(); }
@@ -71,7 +73,7 @@ class FakeGpu final : public Device {
   }
 
   // Not destroyed: memory of a lost GPU cannot be freed, which HostDevice would refuse.
-  device::HostDevice* const host_ = new device::HostDevice;
+  device::HostDevice* const host_;
   const DeviceInfo info_{.name = "Fake GPU",
                          .driver = "1.2.3",
                          .memory_bytes = int64_t{2} << 30,
@@ -107,5 +109,6 @@ extern "C" __attribute__((visibility("default"))) void ShoalOpenCard(
   if (request->open == 0 || behaviour == "refuses") return;
   reply->look = shoal::learner::Look;
   reply->device = new shoal::learner::FakeGpu(
-      behaviour.starts_with(lost) ? std::stoll(behaviour.substr(lost.size())) : INT64_MAX);
+      behaviour.starts_with(lost) ? std::stoll(behaviour.substr(lost.size())) : INT64_MAX,
+      /*pins=*/behaviour != "pins nothing");
 }

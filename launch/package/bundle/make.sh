@@ -29,8 +29,8 @@ libraries_of() {
   LD_LIBRARY_PATH=$work/left_out ldd "$@" | awk '$2 == "=>" && $3 ~ /^\// {print $1, $3}' | sort -u
 }
 
-# The path of a library of the system. It reads the whole list: ldconfig would end with an error if
-# nobody read its output to the end.
+# The path of a library of the system. It reads the whole list: ldconfig ends with an error if its
+# output is not read to the end.
 system_library() {
   ldconfig -p | awk -v name="$1" '$1 == name && /x86-64/ && path == "" {path = $NF} END {print path}'
 }

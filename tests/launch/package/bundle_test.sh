@@ -69,6 +69,16 @@ if [[ -z $slim || $osmesa == installed ]]; then
 else
   grep -q "WARN  opengl" "$work/check" || { cat "$work/check"; fail "check does not miss OSMesa"; }
 fi
+# A GPU: LD_LIBRARY_PATH names the folders of CUDA's libraries, behind the bundle's own. The libraries
+# that a driver of the system needs are the bundle's.
+for soname in libdl.so.2 libpthread.so.0 librt.so.1; do
+  [[ -s $target/$name/lib/$soname ]] || fail "no $soname"
+done
+mkdir "$target/cuda"
+cp "$build/bin/fake_gpu/libshoal-cuda.so" "$target/cuda/"
+for library in "$target/$name"/lib/libfmt.so.*; do echo broken >"$target/cuda/${library##*/}"; done
+run "LD_LIBRARY_PATH='$place/cuda' FAKE_GPU=works '$bundle/bin/shoal' check" >"$work/gpu" 2>&1 || true
+grep -q "OK    gpu.*Fake GPU" "$work/gpu" || { cat "$work/gpu"; fail "no GPU by LD_LIBRARY_PATH"; }
 # A slim bundle differs in what it leaves out: the rest is tried in the full one.
 if [[ -z $slim ]]; then
   keys="--set env_steps=2000 --set eval.interval=1000 --set eval.episodes=2 --set eval.final_episodes=4"
