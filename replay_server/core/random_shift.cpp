@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "common/base/check.h"
+#include "common/base/cpu_clones.h"
 
 namespace shoal::replay {
 namespace {
@@ -67,6 +68,20 @@ void FillBorder(const uint8_t* in, int height, int width, Shift shift, uint8_t* 
   }
 }
 
+// Copies `bytes` bytes in blocks of vectors. For frames, std::memcpy uses `rep movsb` on Intel
+// CPUs. This is slower if the two addresses are not aligned alike: on a Xeon with AVX-512, a batch
+// needed 1.09 times the CPU time (median of 8 pairs of shoal-bench-batches --drawn --threads 1).
+SHOAL_CPU_CLONES void CopyBlocks(const uint8_t* in, size_t bytes, uint8_t* __restrict out) {
+  using Block = uint64_t __attribute__((vector_size(64)));
+  size_t at = 0;
+  for (; at + sizeof(Block) <= bytes; at += sizeof(Block)) {
+    Block block;
+    std::memcpy(&block, in + at, sizeof(Block));
+    std::memcpy(out + at, &block, sizeof(Block));
+  }
+  std::memcpy(out + at, in + at, bytes - at);
+}
+
 }  // namespace
 
 Shift DrawShift(int pad, Random* random) {
@@ -83,8 +98,8 @@ void ShiftPlanes(const uint8_t* in, int planes, int height, int width, Shift shi
   // In and out are equally wide, so every pixel moves equally far in memory and one block is
   // copied. The borders then overwrite what came from neighbouring rows and planes.
   const int bytes = planes * height * width, distance = shift.dy * width + shift.dx;
-  std::memcpy(out + std::max(0, -distance), in + std::max(0, distance),
-              size_t(bytes - std::abs(distance)));
+  CopyBlocks(in + std::max(0, distance), size_t(bytes - std::abs(distance)),
+             out + std::max(0, -distance));
   for (int p = 0; p < planes; ++p, in += height * width, out += height * width) {
     FillBorder(in, height, width, shift, out);
   }
