@@ -48,8 +48,12 @@ class Update:
         encoder = nn.Sequential(*convolutions(*layers), nn.Flatten())
         flat = encoder(torch.zeros(1, 6, side, side)).shape[1]
 
+        features = 512 if network == "nature" else FEATURES
+
         def trunk():
-            return nn.Sequential(nn.Linear(flat, FEATURES), nn.LayerNorm(FEATURES), nn.Tanh())
+            if network == "nature":
+                return nn.Sequential(nn.Linear(flat, features), nn.ReLU())
+            return nn.Sequential(nn.Linear(flat, features), nn.LayerNorm(features), nn.Tanh())
 
         def mlp(inputs, outputs):
             hidden = []
@@ -59,13 +63,13 @@ class Update:
             return nn.Sequential(*hidden, nn.Linear(inputs, outputs))
 
         def critic():
-            return nn.ModuleDict({"trunk": trunk(), "q0": mlp(FEATURES + ACTIONS, 1),
-                                  "q1": mlp(FEATURES + ACTIONS, 1)}).to(DEVICE)
+            return nn.ModuleDict({"trunk": trunk(), "q0": mlp(features + ACTIONS, 1),
+                                  "q1": mlp(features + ACTIONS, 1)}).to(DEVICE)
 
         self.encoder = encoder.to(DEVICE).to(memory_format=torch.channels_last)
         self.critic, self.target = critic(), critic()
         self.target.load_state_dict(self.critic.state_dict())
-        self.actor = nn.ModuleDict({"trunk": trunk(), "mlp": mlp(FEATURES, 2 * ACTIONS)}).to(DEVICE)
+        self.actor = nn.ModuleDict({"trunk": trunk(), "mlp": mlp(features, 2 * ACTIONS)}).to(DEVICE)
         self.log_alpha = torch.tensor(-2.3, device=DEVICE, requires_grad=True)
         self.learned = [*self.encoder.parameters(), *self.critic.parameters()]
         self.policy = list(self.actor.parameters())

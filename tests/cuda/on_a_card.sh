@@ -97,7 +97,7 @@ try_commands_and_updates() {
     loader=("$root/lib/ld-linux-x86-64.so.2" --inhibit-cache --library-path "$root/lib")
   fi
   # The program starts itself again unless OMP_WAIT_POLICY is set, and with a loader it cannot.
-  OMP_WAIT_POLICY=passive OMP_NUM_THREADS=1 timeout "$(seconds_for 200)" \
+  OMP_WAIT_POLICY=passive OMP_NUM_THREADS=1 timeout "$(seconds_for 240)" \
     "${loader[@]}" "$program" "${trial[@]}" >"$work/trial.json" || status=$?
   if [[ ! -s $work/trial.json ]]; then
     row "commands, updates and rates (exit code $status)" - - null false

@@ -29,7 +29,7 @@ constexpr Limits kPixels{1e-4, 3e-3, 0.5};
 // The figures of a rollout are means of several updates.
 constexpr Limits kRollouts{5e-3, 3e-3, 0.5};
 // Many gradients of these deep networks are nearly 0, and Adam's first steps enlarge them.
-constexpr Limits kDeep{1e-4, 5e-2, 0.5};
+constexpr Limits kDeep{1e-3, 5e-2, 0.5};
 constexpr Limits kBf16{2e-2, 0.1, 0.8};
 
 void TryUpdatesOf(Device* device, const Setting& setting, const Schedule& schedule,

@@ -95,7 +95,7 @@ struct ConvolveForwardByTiles {
       if (16 * warp >= strip.pixels) return;
       for (int piece = 0; piece < pieces; piece += 2) {
         const auto pixels = Block::ReadColumns([&](int m, int h) {
-          // What is computed for a pixel after the strip's is not written.
+          // Results for pixels after the strip's are not written.
           const int pixel = 16 * warp + m < strip.pixels ? 16 * warp + m : 0;
           return shared.x + shared.corners[pixel] + shared.pieces[piece + h];
         });
