@@ -118,7 +118,7 @@ struct ConvolveWeightsByTiles {
                           const Strip& strip, int warp, const Shared& shared) {
       const bool bias = kernel.HasBias(place, warp);
       if (!bias && !kernel.HasTap(place, warp)) return;
-      const uint16_t* x = shared.x + kernel.strips.TapOffset(place.first_tap + warp);
+      const uint16_t* position = shared.x + kernel.strips.TapOffset(place.first_tap + warp);
       for (int first = 0; first < Padded(strip.pixels); first += 16) {
         typename Block::Rows filters[kGroup / 16];
         for (int i = 0; i < kGroup / 16; ++i) {
@@ -130,7 +130,7 @@ struct ConvolveWeightsByTiles {
             if (bias) return static_cast<const uint16_t*>(shared.ones);
             // dy is 0 for the pixels after the strip's, whose x may be anything.
             const int pixel = first + k < strip.pixels ? first + k : 0;
-            return x + shared.corners[pixel] + 16 * j;
+            return position + shared.corners[pixel] + 16 * j;
           });
           for (int i = 0; i < kGroup / 16; ++i) tiles[i][j].AddProduct(filters[i], channels);
         }
