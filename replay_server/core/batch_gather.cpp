@@ -44,7 +44,8 @@ std::optional<BatchPlan> DrawPlan(const PlanOptions& options, Selector* selector
 }
 
 size_t FrameCopies::CopiesOfPart() const {
-  const auto frame_bytes = static_cast<size_t>(channels * height * width);
+  const auto frame_bytes =
+      static_cast<size_t>(channels) * static_cast<size_t>(height) * static_cast<size_t>(width);
   return std::max<size_t>(1, kBytesOfPart / std::max<size_t>(1, frame_bytes));
 }
 

@@ -39,9 +39,9 @@ struct RecordingPin {
  private:
   static bool IsMapped(std::span<const uint8_t> memory) {
     const auto page = static_cast<uintptr_t>(sysconf(_SC_PAGESIZE));
-    const uintptr_t first = reinterpret_cast<uintptr_t>(memory.data()) / page * page;
+    const uintptr_t in_page = reinterpret_cast<uintptr_t>(memory.data()) % page;
     unsigned char resident;
-    return mincore(reinterpret_cast<void*>(first), 1, &resident) == 0;
+    return mincore(const_cast<uint8_t*>(memory.data()) - in_page, 1, &resident) == 0;
   }
 };
 

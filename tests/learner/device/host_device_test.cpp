@@ -208,7 +208,8 @@ std::vector<double> Convolve(const ConvolutionShape& s, const std::vector<float>
         const int row = i * s.stride + u - s.padding, column = j * s.stride + v - s.padding;
         if (row < 0 || row >= s.height || column < 0 || column >= s.width) continue;
         const int from = ((b * s.height + row) * s.width + column) * s.channels + c;
-        sum += double(x[size_t(from)]) * weight[size_t(n * s.kernel * s.kernel * s.channels + k)];
+        const int by = n * s.kernel * s.kernel * s.channels + k;
+        sum += double(x[size_t(from)]) * weight[size_t(by)];
       }
       y.push_back(sum);
     }
@@ -222,10 +223,11 @@ void HostDeviceTest::CompareConvolution(Type type, ConvolutionShape shape) {
   shape.type = type;
   shape.output_height = (shape.height + 2 * shape.padding - shape.kernel) / shape.stride + 1;
   shape.output_width = (shape.width + 2 * shape.padding - shape.kernel) / shape.stride + 1;
-  const auto inputs = size_t(shape.batch * shape.height * shape.width * shape.channels);
-  const auto weights = size_t(shape.filters * shape.kernel * shape.kernel * shape.channels);
-  const auto outputs =
-      size_t(shape.batch * shape.output_height * shape.output_width * shape.filters);
+  const size_t batch = size_t(shape.batch), filters = size_t(shape.filters);
+  const size_t channels = size_t(shape.channels), kernel = size_t(shape.kernel);
+  const size_t inputs = batch * size_t(shape.height) * size_t(shape.width) * channels;
+  const size_t weights = filters * kernel * kernel * channels;
+  const size_t outputs = batch * size_t(shape.output_height) * size_t(shape.output_width) * filters;
   const double tolerance = type == Type::kF32 ? 1e-5 : 0.02;
   std::vector<float> x = Numbers(inputs), weight = Numbers(weights), dy = Numbers(outputs);
   std::vector<float> bias = Numbers(size_t(shape.filters));

@@ -162,8 +162,8 @@ TEST(MapKernels, ABiasIsAddedToEveryRowOfItsGroup) {
 TEST(MapKernels, ABiasIsAddedToAMapInBf16) {
   // Three pixels of 16 filters: the value of number i is i - 20.
   std::vector<Eight> y(6), expected(6);
-  std::vector<float> bias;
-  for (int n = 0; n < 16; ++n) bias.push_back(0.5F * float(n));
+  std::vector<float> bias(16);
+  for (size_t n = 0; n < bias.size(); ++n) bias[n] = 0.5F * float(n);
   for (int i = 0; i < 48; ++i) {
     y[size_t(i / 8)].numbers[i % 8] = ToBf16(float(i - 20));
     const float sum = float(i - 20) + bias[size_t(i % 16)];

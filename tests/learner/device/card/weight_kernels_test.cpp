@@ -112,8 +112,8 @@ TEST_P(WeightKernels, TheConvolutionByTilesEqualsThePlainOne) {
   const MapShape& shape = GetParam();
   ASSERT_GT(ConvolveForwardByTiles::StripsOf(shape).rows, 0);
   Halves x = NoiseInHalves(shape.inputs(), 5), weight = NoiseInHalves(shape.weights(), 6);
-  std::vector<float> bias;
-  for (int n = 0; n < shape.filters; ++n) bias.push_back(float(n % 7) - 3);
+  std::vector<float> bias(size_t(shape.filters), 0.0F);
+  for (size_t n = 0; n < bias.size(); ++n) bias[n] = float(n % 7) - 3;
   const auto run = [&](bool with_bias, HostOrder order) {
     Halves y = NoiseInHalves(shape.outputs(), 7);
     RunOnHost(ConvolveForwardByTiles{.strips = ConvolveForwardByTiles::StripsOf(shape),
