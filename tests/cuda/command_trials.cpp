@@ -268,11 +268,14 @@ void TryConvolution(Device* device, const ConvolutionShape& s, const Trials& tri
       },
       trials);
   Try(
-      device, "gradient by weights " + name, s.type,
-      {.inputs = {x, dy}, .results = {{Type::kF32, weights}}},
+      device, "gradient by weights and bias " + name, s.type,
+      {.inputs = {x, dy}, .results = {{Type::kF32, weights}, {Type::kF32, s.filters}}},
       [&](const auto& in, const auto& out) {
-        return ConvolutionWeights{
-            .shape = s, .x = in[0], .dy = in[1], .weight_gradient = static_cast<float*>(out[0])};
+        return ConvolutionWeights{.shape = s,
+                                  .x = in[0],
+                                  .dy = in[1],
+                                  .weight_gradient = static_cast<float*>(out[0]),
+                                  .bias_gradient = static_cast<float*>(out[1])};
       },
       trials);
 }
@@ -288,6 +291,8 @@ void TryCommands(Device* device, bool quick, const Trials& trials) {
     TryConvolution(device, Shape(type, 16, 42, 8, 32, 3, 2, 0), trials);  // compact
     TryConvolution(device, Shape(type, 8, 41, 32, 32, 3, 1, 0), trials);  // drq
     TryConvolution(device, Shape(type, 8, 84, 8, 32, 8, 4, 0), trials);   // nature
+    // Larger than our kernels compute in bf16.
+    TryConvolution(device, Shape(type, 4, 10, 64, 192, 3, 1, 1), trials);
   }
 }
 

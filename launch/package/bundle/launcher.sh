@@ -22,5 +22,6 @@ fi
 fonts=$root/share/fontconfig/fonts.conf
 if [ -f "$fonts" ]; then export FONTCONFIG_FILE="${FONTCONFIG_FILE:-$fonts}"; fi
 # LD_LIBRARY_PATH may name the folders of CUDA's libraries, which the bundle does not have.
-exec "$loader" --inhibit-cache --library-path "$root/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}" --argv0 "$root/bin/$name" \
+libraries=$root/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
+exec "$loader" --inhibit-cache --library-path "$libraries" --argv0 "$root/bin/$name" \
   "$root/libexec/$name" "$@"

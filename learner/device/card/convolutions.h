@@ -9,21 +9,17 @@
 #pragma once
 
 #include <cuda_runtime_api.h>
-#include <cudnn.h>
 
-#include <array>
 #include <cstdint>
-#include <map>
-#include <memory>
 
+#include "learner/device/card/cudnn_plans.h"
 #include "learner/device/commands.h"
 
 namespace shoal::learner::device {
 
 class CudaConvolutions {
  public:
-  explicit CudaConvolutions(cudaStream_t stream);
-  ~CudaConvolutions();
+  explicit CudaConvolutions(cudaStream_t stream) : stream_(stream), plans_(stream) {}
   CudaConvolutions(const CudaConvolutions&) = delete;
   CudaConvolutions& operator=(const CudaConvolutions&) = delete;
 
@@ -38,13 +34,6 @@ class CudaConvolutions {
   void Run(const ConvolutionWeights& command, void* workspace);
 
  private:
-  enum class Kind : int32_t { kForward, kData, kWeights };
-  class Plan;
-  using Key = std::array<int32_t, 11>;
-
-  // The plan of cuDNN; null if it has none.
-  Plan* PlanOf(Kind kind, const ConvolutionShape& shape);
-  std::unique_ptr<Plan> Choose(Kind kind, const ConvolutionShape& shape) const;
   // Parts of the workspace of ConvolutionWeights, in bytes: cuDNN's, the gradient in bf16, parts of
   // sums, and counters.
   struct WeightsWorkspace {
@@ -53,11 +42,10 @@ class CudaConvolutions {
   };
   WeightsWorkspace WorkspaceOf(const ConvolutionWeights& command);
   void RunByTiles(const ConvolutionWeights& command, void* workspace);
-  void RunPlan(const Plan& plan, const ConvolutionWeights& command, void* workspace);
+  void RunPlan(const CudnnPlan& plan, const ConvolutionWeights& command, void* workspace);
 
   const cudaStream_t stream_;
-  cudnnHandle_t handle_ = nullptr;
-  std::map<Key, std::unique_ptr<Plan>> plans_;
+  CudnnPlans plans_;
 };
 
 }  // namespace shoal::learner::device

@@ -69,8 +69,7 @@ struct ConvolveForwardByTiles {
       block.Warps([&](int warp) { sums(warp).Clear(); });
       for (int piece = 0; piece < pieces(); piece += kPieces) {
         if (piece == 0) {
-          block.Threads(
-              [&](int thread) { strips.Load<kThreads>(x, strip, 0, thread, shared.x); });
+          block.Threads([&](int thread) { strips.Load<kThreads>(x, strip, 0, thread, shared.x); });
         }
         if (i == first_strip || pieces() > kPieces) {
           block.Threads([&](int thread) { LoadFilters(first_filter, piece, thread, &shared); });

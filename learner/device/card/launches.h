@@ -6,6 +6,7 @@
 
 #include "learner/device/card/forward_kernels.h"
 #include "learner/device/card/map_kernels.h"
+#include "learner/device/card/plain_convolutions.h"
 #include "learner/device/card/weight_kernels.h"
 #include "learner/device/kernels/kernels.h"
 

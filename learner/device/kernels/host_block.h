@@ -22,6 +22,8 @@ enum class HostOrder { kForward, kBackward };
 template <int kThreads>
 class HostBlock {
  public:
+  static constexpr int kWarps = kThreads / kWarpThreads;
+
   HostBlock(int index, int count, HostOrder order) : index_(index), count_(count), order_(order) {}
 
   int index() const { return index_; }
@@ -34,18 +36,21 @@ class HostBlock {
     }
   }
 
-  // One T for each thread.
-  template <class T>
-  class Private {
+  // kCount numbers of type T, which are invalid before they are written.
+  template <class T, int kCount>
+  class Values {
    public:
-    explicit Private(const HostBlock&) : values_(kThreads) {
+    explicit Values(const HostBlock&) : values_(kCount) {
       std::memset(static_cast<void*>(values_.data()), 0xff, values_.size() * sizeof(T));
     }
-    T& operator()(int thread) { return values_[size_t(thread)]; }
+    T& operator()(int i) { return values_[size_t(i)]; }
 
    private:
     std::vector<T> values_;
   };
+  // One T for each thread.
+  template <class T>
+  using Private = Values<T, kThreads>;
 
   template <class Body>
   void Warps(const Body& body) const {
@@ -97,16 +102,7 @@ class HostBlock {
   };
 
   template <class T>
-  class PerWarp {
-   public:
-    explicit PerWarp(const HostBlock&) : values_(kWarps) {
-      std::memset(static_cast<void*>(values_.data()), 0xff, values_.size() * sizeof(T));
-    }
-    T& operator()(int warp) { return values_[size_t(warp)]; }
-
-   private:
-    std::vector<T> values_;
-  };
+  using PerWarp = Values<T, kWarps>;
 
   // Returns true in the last of `blocks` blocks that call this function with the same counter. The
   // counter is 0 before and afterwards. The last block sees what the others wrote.
@@ -117,8 +113,6 @@ class HostBlock {
   }
 
  private:
-  static constexpr int kWarps = kThreads / kWarpThreads;
-
   const int index_, count_;
   const HostOrder order_;
 };

@@ -11,6 +11,7 @@
 #include "learner/device/kernels/flags.h"
 #include "learner/device/kernels/gaussian.h"
 #include "learner/device/kernels/inputs.h"
+#include "learner/device/kernels/layer_norm.h"
 #include "learner/device/kernels/layers.h"
 #include "learner/device/kernels/losses.h"
 #include "learner/device/kernels/moments.h"

@@ -77,7 +77,8 @@ done
 mkdir "$target/cuda"
 cp "$build/bin/fake_gpu/libshoal-cuda.so" "$target/cuda/"
 for library in "$target/$name"/lib/libfmt.so.*; do echo broken >"$target/cuda/${library##*/}"; done
-run "LD_LIBRARY_PATH='$place/cuda' FAKE_GPU=works '$bundle/bin/shoal' check" >"$work/gpu" 2>&1 || true
+run "LD_LIBRARY_PATH='$place/cuda' FAKE_GPU=works '$bundle/bin/shoal' check" >"$work/gpu" 2>&1 ||
+  { cat "$work/gpu"; fail "shoal check with LD_LIBRARY_PATH"; }
 grep -q "OK    gpu.*Fake GPU" "$work/gpu" || { cat "$work/gpu"; fail "no GPU by LD_LIBRARY_PATH"; }
 # A slim bundle differs in what it leaves out: the rest is tried in the full one.
 if [[ -z $slim ]]; then

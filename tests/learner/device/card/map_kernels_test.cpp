@@ -10,6 +10,7 @@
 #include <random>
 #include <vector>
 
+#include "learner/device/card/plain_convolutions.h"
 #include "learner/device/kernels/host_block.h"
 
 namespace shoal::learner::kernels {

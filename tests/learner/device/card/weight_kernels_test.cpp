@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "learner/device/card/forward_kernels.h"
+#include "learner/device/card/plain_convolutions.h"
 #include "learner/device/kernels/host_block.h"
 
 namespace shoal::learner::kernels {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/nn/layer_norm.h"
+#include "learner/device/kernels/layer_norm.h"
 #include "tests/learner/device/kernels/kernel_fixture.h"
 
 namespace shoal::learner::kernels {
