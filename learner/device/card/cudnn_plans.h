@@ -36,7 +36,7 @@ class CudnnPlans {
   CudnnPlans& operator=(const CudnnPlans&) = delete;
 
   // The plan for a shape, chosen at the first call, which must precede a capture. Null if the shape
-  // is in f32 or if cuDNN has no engine; the latter is said once on stderr.
+  // is in f32, or if cuDNN has no engine; a line on stderr says once that there is no engine.
   const CudnnPlan* Of(ConvolutionKind kind, const ConvolutionShape& shape);
   // input and output: maps, or their gradients. weight: or its gradient.
   void Run(const CudnnPlan& plan, const void* input, const void* weight, const void* output,
