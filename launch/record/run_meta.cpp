@@ -66,6 +66,11 @@ ordered_json Changes(const RunMeta& meta) {
   return list;
 }
 
+std::optional<double> NumberIfAny(const nlohmann::json& object, const char* name) {
+  const auto it = object.find(name);
+  return it != object.end() && it->is_number() ? std::optional(it->get<double>()) : std::nullopt;
+}
+
 SettingChange ReadChange(const nlohmann::json& object) {
   SettingChange change;
   object.at("time").get_to(change.time);
@@ -139,6 +144,8 @@ void WriteRunMeta(const std::filesystem::path& run, const Config& config, const 
       {"updates_per_env_step", UpdatesPerEnvStep(meta)},
       {"updates_lost", meta.updates_lost},
       {"wall_seconds", meta.wall_seconds},
+      {"cpu_seconds", OrNull(meta.cpu_seconds)},
+      {"energy_wh", OrNull(meta.energy_wh)},
       {"first_success", FirstSuccess(meta)},
       {"best", Best(meta)},
       {"final_success_rate", OrNull(meta.final_success)},
@@ -172,13 +179,13 @@ RunMeta ReadRunMeta(const std::filesystem::path& run) {
     object.at("env_steps").get_to(meta.env_steps);
     object.at("updates").get_to(meta.updates);
     object.at("restarts").get_to(meta.restarts);
+    meta.cpu_seconds = NumberIfAny(object, "cpu_seconds");
+    meta.energy_wh = NumberIfAny(object, "energy_wh");
     meta.resends = object.value("resends", uint64_t{0});
     meta.updates_lost = object.value("updates_lost", uint64_t{0});
     meta.faulty_episodes = object.value("faulty_episodes", meta.faulty_episodes);
     meta.exit = object.value("exit", meta.exit);
-    if (const auto it = object.find("final_return_mean"); it != object.end() && it->is_number()) {
-      meta.final_return = it->get<double>();
-    }
+    meta.final_return = NumberIfAny(object, "final_return_mean");
     for (const auto& change : object.value("changes", nlohmann::json::array())) {
       meta.changes.push_back(ReadChange(change));
     }

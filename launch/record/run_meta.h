@@ -25,7 +25,11 @@ struct RunMeta {
   uint64_t env_steps = 0, updates = 0;
   uint64_t updates_lost = 0;  // lost with learners that died (common/run_folder/update_page.h)
   double wall_seconds = 0;    // over all sessions of a resumed run
-  double target = 0;          // success rate of first_success
+  // Both are sums over all sessions; empty if a session did not count them. Processor time of
+  // replay, learner, actors and evaluation, on all hosts; and energy of the coordinator's host with
+  // other programs (energy_meter.h), in Wh.
+  std::optional<double> cpu_seconds = 0, energy_wh = 0;
+  double target = 0;  // success rate of first_success
   std::optional<EvaluationPoint> first_success;
   std::optional<EvaluationPoint> best;  // best evaluation during training
   std::optional<double> final_success;  // success rate of the final evaluation

@@ -169,6 +169,7 @@ void Coordinator::Stop(RunEnd end) {
 }
 
 RunResult Coordinator::Result() {
+  energy_.Sample();
   RunMeta meta = Meta();
   meta.exit = ToString(decisions_.FinalEnd());
   record_.scalars().WriteEnd(decisions_.FinalEnd() != RunEnd::kFailed);
@@ -322,6 +323,7 @@ void Coordinator::WriteFiles(SteadyTime now) {
 void Coordinator::WriteMeta(SteadyTime now) {
   meta_written_ = now;
   meta_due_ = false;
+  energy_.Sample();
   record_.WriteMeta(Meta());
 }
 
@@ -411,7 +413,18 @@ RunMeta Coordinator::Meta() const {
   meta.restarts += supervisor_.restarts();
   meta.resends += SaturatingCast<uint64_t>(watch_.view().Total(RoleName(Role::kActor), "resends"));
   meta.faulty_episodes = FaultyEpisodes();
+  AddCost(&meta);
   return meta;
+}
+
+void Coordinator::AddCost(RunMeta* meta) const {
+  const auto energy = energy_.WattHours();
+  if (!energy) meta->energy_wh.reset();
+  if (meta->energy_wh) *meta->energy_wh += *energy;
+  if (!meta->cpu_seconds) return;
+  for (const auto& [role, totals] : TotalsOf(watch_.view())) {
+    *meta->cpu_seconds += totals.cpu_seconds;
+  }
 }
 
 }  // namespace shoal::launch

@@ -20,6 +20,7 @@
 #include "launch/processes/remote_host.h"
 #include "launch/processes/running_process.h"
 #include "launch/processes/supervisor.h"
+#include "launch/record/energy_meter.h"
 #include "launch/record/run_meta.h"
 #include "launch/run/command_handler.h"
 #include "launch/run/control_sender.h"
@@ -102,6 +103,8 @@ class Coordinator {
   ProgressFigures Figures(SteadyTime now) const;
   // Number of the whole run's episodes that ended because of a number that is not finite, by cause.
   std::map<std::string, uint64_t> FaultyEpisodes() const;
+  // Adds the cost of this session to that of the earlier sessions in `meta`.
+  void AddCost(RunMeta* meta) const;
   // The present content for meta.json.
   RunMeta Meta() const;
 
@@ -124,6 +127,7 @@ class Coordinator {
   RunInbox inbox_;
 
   const SteadyTime start_;  // of the clock AwakeNow()
+  EnergyMeter energy_;
   const int usable_cores_;
   std::optional<SteadyTime> meta_written_;
   bool meta_due_ = false;  // an event for meta.json has happened

@@ -75,6 +75,8 @@ TEST(Resume, WithAFileTheReplayGoesOnWithItsContent) {
   EXPECT_EQ(meta.at("accounting").at("lost_with_process"), 0);
   EXPECT_GE(meta.at("env_steps").get<int64_t>(), 4000);
   EXPECT_GT(meta.at("updates").get<int64_t>(), before.at("updates").get<int64_t>());
+  EXPECT_GT(before.at("cpu_seconds").get<double>(), 0);
+  EXPECT_GT(meta.at("cpu_seconds").get<double>(), before.at("cpu_seconds").get<double>());
   EXPECT_EQ(resumed.out.find("refilled"), std::string::npos) << resumed.out;
   EXPECT_EQ(meta.at("commits"), nlohmann::json({"0123456789ab", before.at("commit")}));
   EXPECT_EQ(meta.at("commit"), before.at("commit"));

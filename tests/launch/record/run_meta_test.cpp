@@ -23,6 +23,8 @@ TEST(RunMeta, AResumedRunFindsItsCountersAndWhatWasChanged) {
   meta.restarts = 2;
   meta.resends = 30;
   meta.updates_lost = 3;
+  meta.cpu_seconds = 17.5;
+  meta.energy_wh = 0.25;
   meta.changes = {{.time = "2026-01-31T12:05:00Z",
                    .env_steps = 5,
                    .updates = 6,
@@ -38,6 +40,8 @@ TEST(RunMeta, AResumedRunFindsItsCountersAndWhatWasChanged) {
   EXPECT_EQ(back.restarts, 2);
   EXPECT_EQ(back.resends, 30u);
   EXPECT_EQ(back.updates_lost, 3u);
+  EXPECT_EQ(back.cpu_seconds, 17.5);
+  EXPECT_EQ(back.energy_wh, 0.25);
   ASSERT_EQ(back.changes.size(), 1u);
   EXPECT_EQ(back.changes[0].time, "2026-01-31T12:05:00Z");
   EXPECT_EQ(back.changes[0].env_steps, 5u);
@@ -116,9 +120,11 @@ TEST(RunMeta, AnOlderFileHasNoChanges) {
   auto json = nlohmann::json::parse(ReadFile(run.path() / "meta.json"));
   json.erase("changes");
   json.erase("resends");
+  json.erase("cpu_seconds");
   WriteFileAtomically(run.path() / "meta.json", json.dump());
   EXPECT_TRUE(ReadRunMeta(run.path()).changes.empty());
   EXPECT_EQ(ReadRunMeta(run.path()).resends, 0u);
+  EXPECT_FALSE(ReadRunMeta(run.path()).cpu_seconds) << "the earlier sessions did not count it";
 }
 
 TEST(RunMeta, ABrokenChangeIsAnError) {
