@@ -6,6 +6,8 @@
 
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/config/config_io.h"
+#include "common/tasks/task_registry.h"
 #include "tests/support/error_message.h"
 #include "tests/support/temporary_folder.h"
 
@@ -154,6 +156,31 @@ TEST(Definition, EveryCommittedOneIsGood) {
     EXPECT_EQ(definition.name, name) << "the name by which it is found";
     const Config base = ResolveBase(definition, file);
     for (const Arm& arm : definition.arms) EXPECT_NO_THROW(ArmConfig(base, arm, file));
+  }
+}
+
+// All keys but those that an experiment sets itself.
+ordered_json KeysOfRuns(const Config& config) {
+  ordered_json keys = ToJson(config);
+  keys.erase("preset");
+  keys.at("eval").erase("final_episodes");
+  return keys;
+}
+
+// An arm repeats the keys of its task's preset that differ between tasks, so the two could diverge.
+TEST(Definition, ArmsOfPlanetHaveTheRecipesOfThePresets) {
+  for (const char* name : {"planet-6", "planet-6-500k"}) {
+    const Definition definition = ReadDefinition(FindDefinition(name));
+    const Config base = ResolveBase(definition, name);
+    EXPECT_EQ(definition.arms.size(), 6u);
+    for (const Arm& arm : definition.arms) {
+      Config preset = LoadPreset("dmc-" + arm.name + "-drq");
+      if (definition.name == "planet-6-500k") preset.env_steps *= 5;
+      EXPECT_EQ(KeysOfRuns(ArmConfig(base, arm, name)), KeysOfRuns(preset)) << arm.name;
+      EXPECT_EQ(preset.task, arm.name);
+      const int64_t frames = preset.env_steps * tasks::FindTask(arm.name).action_repeat();
+      EXPECT_EQ(frames, definition.name == "planet-6" ? 100'000 : 500'000) << arm.name;
+    }
   }
 }
 
