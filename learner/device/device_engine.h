@@ -67,7 +67,7 @@ class DeviceEngine final : public Engine {
                                 Array log_std_gradient) override;
   void SquashedGaussianFigures(const SquashedSample& sample, Number entropy,
                                Number saturation) override;
-  void AddClippedNoise(Array action, double sigma, double limit, Random* random,
+  void AddClippedNoise(Array action, Number sigma, double limit, Random* random,
                        Array noisy) override;
 
   void Targets(const TargetTerms& terms, Array y) override;
@@ -76,8 +76,9 @@ class DeviceEngine final : public Engine {
                   const CriticNumbers& figures) override;
   void EntropyActorLoss(Array log_prob, std::span<const Array> q, Number temperature,
                         std::span<const Array> q_gradients, Number loss) override;
-  void DeterministicActorLoss(Array q, Array mean, Array action, double mean_penalty,
-                              Array q_gradient, Number loss, Number saturation) override;
+  void DeterministicActorLoss(std::span<const Array> q, Array mean, Array action,
+                              double mean_penalty, std::span<const Array> q_gradients, Number loss,
+                              Number saturation) override;
   void LabelLoss(Array y, Array labels, float weight, float unit, Array gradient,
                  Number mean_square) override;
   void ClippedPolicyLoss(const ClippedPolicyTerms& terms, nn::ParameterSet* log_std,

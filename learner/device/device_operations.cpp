@@ -167,11 +167,11 @@ void DeviceEngine::SquashedGaussianFigures(const SquashedSample& sample, Number 
                                                   .saturation = AddressOf(saturation)});
 }
 
-void DeviceEngine::AddClippedNoise(Array action, double sigma, double limit, Random* random,
+void DeviceEngine::AddClippedNoise(Array action, Number sigma, double limit, Random* random,
                                    Array noisy) {
   const std::vector<double> normals = alone_.Normals(rows(), ColumnsOf(action), random);
   workspace_.Add(kernels::AddClippedNoise{.n = action.size(),
-                                          .sigma = sigma,
+                                          .sigma = AddressOf(sigma),
                                           .limit = limit,
                                           .action = AddressOf(action),
                                           .noise = landing().Add(std::span<const double>(normals)),
@@ -230,17 +230,21 @@ void DeviceEngine::EntropyActorLoss(Array log_prob, std::span<const Array> q, Nu
                                            .loss = AddressOf(loss)});
 }
 
-void DeviceEngine::DeterministicActorLoss(Array q, Array mean, Array action, double mean_penalty,
-                                          Array q_gradient, Number loss, Number saturation) {
-  workspace_.Add(kernels::DeterministicActorLoss{.rows = rows(),
-                                                 .actions = ColumnsOf(action),
-                                                 .q = AddressOf(q),
-                                                 .mean = AddressOf(mean),
-                                                 .action = AddressOf(action),
-                                                 .mean_penalty = mean_penalty,
-                                                 .q_gradient = AddressOf(q_gradient),
-                                                 .loss = AddressOf(loss),
-                                                 .saturation = AddressOf(saturation)});
+void DeviceEngine::DeterministicActorLoss(std::span<const Array> q, Array mean, Array action,
+                                          double mean_penalty, std::span<const Array> q_gradients,
+                                          Number loss, Number saturation) {
+  CHECK(!q.empty() && q.size() == q_gradients.size()) << q.size();
+  kernels::DeterministicActorLoss kernel{.rows = rows(),
+                                         .actions = ColumnsOf(action),
+                                         .critics = int(q.size()),
+                                         .mean = AddressOf(mean),
+                                         .action = AddressOf(action),
+                                         .mean_penalty = mean_penalty,
+                                         .loss = AddressOf(loss),
+                                         .saturation = AddressOf(saturation)};
+  SetAddresses(q, kernel.q);
+  SetAddresses(q_gradients, kernel.q_gradient);
+  workspace_.Add(kernel);
 }
 
 void DeviceEngine::LabelLoss(Array y, Array labels, float weight, float unit, Array gradient,

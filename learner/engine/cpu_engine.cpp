@@ -175,13 +175,14 @@ void CpuEngine::SquashedGaussianFigures(const SquashedSample& sample, Number ent
   AddMean(float(SaturatedShare(HostValues(sample.action))), saturation, /*rounds=*/false);
 }
 
-void CpuEngine::AddClippedNoise(Array action, double sigma, double limit, Random* random,
+void CpuEngine::AddClippedNoise(Array action, Number sigma, double limit, Random* random,
                                 Array noisy) {
   const std::span<const float> own = HostValues(action);
   const std::span<float> result = HostValues(noisy);
   const std::vector<double> normals = replica_->Normals(batch_, int(own.size() / Rows()), random);
+  const double deviation = Cell(sigma);
   for (size_t i = 0; i < normals.size(); ++i) {
-    const double noise = std::clamp(sigma * normals[i], -limit, limit);
+    const double noise = std::clamp(deviation * normals[i], -limit, limit);
     result[i] = float(std::clamp(own[i] + noise, -1.0, 1.0));
   }
 }
@@ -251,12 +252,16 @@ void CpuEngine::EntropyActorLoss(Array log_prob, std::span<const Array> q, Numbe
   ActorLossBackward(modules_.batch, q0, q1, Data(q_gradients[0]), Data(q_gradients[1]));
 }
 
-void CpuEngine::DeterministicActorLoss(Array q, Array mean, Array action, double mean_penalty,
-                                       Array q_gradient, Number loss, Number saturation) {
-  AddMean(learner::DeterministicActorLoss(HostValues(q), HostValues(mean), mean_penalty), loss,
-          /*rounds=*/true);
+void CpuEngine::DeterministicActorLoss(std::span<const Array> q, Array mean, Array action,
+                                       double mean_penalty, std::span<const Array> q_gradients,
+                                       Number loss, Number saturation) {
+  CHECK(!q.empty() && q.size() == q_gradients.size()) << q.size();
+  std::vector<float*> gradients;
+  for (const Array gradient : q_gradients) gradients.push_back(Data(gradient));
+  AddMean(learner::DeterministicActorLoss(modules_.batch, DataOf(q), HostValues(mean), mean_penalty,
+                                          gradients),
+          loss, /*rounds=*/true);
   AddMean(SaturatedShare(HostValues(action)), saturation, /*rounds=*/false);
-  std::ranges::fill(HostValues(q_gradient), -1.f / float(Rows()));
 }
 
 void CpuEngine::LabelLoss(Array y, Array labels, float weight, float unit, Array gradient,

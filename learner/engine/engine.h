@@ -139,8 +139,8 @@ class Engine {
   virtual void SquashedGaussianFigures(const SquashedSample& sample, Number entropy,
                                        Number saturation) = 0;
   // noisy = clip(action + clip(sigma eps, -limit, limit), -1, 1), eps ~ N(0, 1) of `random` (Eq.
-  // 18). action (b, A).
-  virtual void AddClippedNoise(Array action, double sigma, double limit, Random* random,
+  // 18, 31). action (b, A).
+  virtual void AddClippedNoise(Array action, Number sigma, double limit, Random* random,
                                Array noisy) = 0;
 
   // ---- Targets and losses ----
@@ -159,11 +159,12 @@ class Engine {
   // after the next Gather.
   virtual void EntropyActorLoss(Array log_prob, std::span<const Array> q, Number temperature,
                                 std::span<const Array> q_gradients, Number loss) = 0;
-  // Eq. 19: L = -mean_b q + mean_penalty mean_ba m^2, where m (b, A) are the policy's outputs
-  // before tanh. Computes dL/dq (b); L and the share of |action| > 0.99 are available after the
-  // next Gather.
-  virtual void DeterministicActorLoss(Array q, Array mean, Array action, double mean_penalty,
-                                      Array q_gradient, Number loss, Number saturation) = 0;
+  // Eq. 19 and 32: L = -mean_b min_i q_i + mean_penalty mean_ba m^2, where m (b, A) are the
+  // policy's outputs before tanh. Computes dL/dq_i (b); L and the share of |action| > 0.99 are
+  // available after the next Gather.
+  virtual void DeterministicActorLoss(std::span<const Array> q, Array mean, Array action,
+                                      double mean_penalty, std::span<const Array> q_gradients,
+                                      Number loss, Number saturation) = 0;
   // Eq. 27: L = weight / (B L) sum (y - label)^2. Computes dL/dy (b, L); the mean square, times
   // unit^2, is available after the next Gather.
   virtual void LabelLoss(Array y, Array labels, float weight, float unit, Array gradient,

@@ -73,9 +73,20 @@ void ActorLossBackward(int batch, const float* q0, const float* q1, float* q0_gr
   }
 }
 
-float DeterministicActorLoss(std::span<const float> q, std::span<const float> mean,
-                             double mean_penalty) {
-  double loss = -std::accumulate(q.begin(), q.end(), 0.0) / double(q.size());
+float DeterministicActorLoss(int batch, std::span<const float* const> q,
+                             std::span<const float> mean, double mean_penalty,
+                             std::span<float* const> q_gradients) {
+  double sum = 0;
+  for (int b = 0; b < batch; ++b) {
+    size_t smallest = 0;
+    for (size_t i = 1; i < q.size(); ++i) {
+      if (q[i][b] < q[smallest][b]) smallest = i;
+    }
+    for (float* const gradient : q_gradients) gradient[b] = 0;
+    q_gradients[smallest][b] = -1.f / float(batch);
+    sum += q[smallest][b];
+  }
+  double loss = -sum / double(batch);
   if (mean_penalty > 0) {
     const double squares = std::inner_product(mean.begin(), mean.end(), mean.begin(), 0.0);
     loss += mean_penalty * squares / double(mean.size());

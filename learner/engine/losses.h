@@ -59,10 +59,11 @@ float ActorLossForward(int batch, const float* log_prob, const float* q0, const 
 void ActorLossBackward(int batch, const float* q0, const float* q1, float* q0_gradient,
                        float* q1_gradient);
 
-// Eq. 19:  L = -mean_b q + mean_penalty mean_ba m^2;   dL/dq = -1 / B. mean: m (B, A), the policy's
-// outputs before tanh.
-float DeterministicActorLoss(std::span<const float> q, std::span<const float> mean,
-                             double mean_penalty);
+// Eq. 19 and 32:  L = -mean_b min_i q_i + mean_penalty mean_ba m^2;   dL/dq_i = -1 / B for the
+// smallest (the first one on a tie), else 0. mean: m (B, A), the policy's outputs before tanh.
+float DeterministicActorLoss(int batch, std::span<const float* const> q,
+                             std::span<const float> mean, double mean_penalty,
+                             std::span<float* const> q_gradients);
 
 // Eq. 8:  L = temperature (entropy - target_entropy) with entropy = -mean_b log pi held fixed;
 //   dL/dlog temperature = L

@@ -172,8 +172,9 @@ class AveragedDdpgAgent final : public Agent {
     const auto [mean, log_std, action] = actor_.Forward(batch.obs_vector);
     critic_.ForwardObservation(batch.obs_vector);
     critic_.ForwardAction(action);
-    engine_->DeterministicActorLoss(critic_.q(0), mean, action, learner_.mean_penalty,
-                                    actors_q_gradients_[0], actor_loss_, saturation_);
+    engine_->DeterministicActorLoss(std::array{critic_.q(0)}, mean, action, learner_.mean_penalty,
+                                    std::span(actors_q_gradients_).first(1), actor_loss_,
+                                    saturation_);
     critic_.BackwardAction(actors_q_gradients_, action_gradient_);
     actor_.BackwardAction(action_gradient_, learner_.mean_penalty);
     engine_->Gather(&actor_optimiser_, actor_squares_);

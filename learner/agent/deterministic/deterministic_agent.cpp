@@ -2,6 +2,8 @@
 #include "learner/agent/deterministic/deterministic_agent.h"
 
 #include <array>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "common/base/random.h"
@@ -51,9 +53,11 @@ class DeterministicAgent final : public Agent {
   void Encode(Frames frames, nn::Statistics statistics) {
     if (encoder_) encoder_->Forward(frames, statistics);
   }
+  // Adds noise to an action, if there is noise.
+  Array WithNoise(Array action, Random* random);
   void ComputeTargets(const Transitions& batch, Random* random);
   void UpdateCritic(const Transitions& batch, const OnStageEnd& on_stage_end);
-  void UpdateActor(const Transitions& batch, const OnStageEnd& on_stage_end);
+  void UpdateActor(const Transitions& batch, Random* random, const OnStageEnd& on_stage_end);
   void MoveTargetsAndAverage();
   // The modules that the critic's step changes.
   std::vector<nn::Module*> CriticModules();
@@ -65,7 +69,8 @@ class DeterministicAgent final : public Agent {
   Engine* const engine_;
   const std::unique_ptr<nn::EncoderModule> encoder_;  // null without pixels
   const nn::Features* const features_;
-  nn::ActorModule actor_, target_actor_;
+  nn::ActorModule actor_;
+  const std::unique_ptr<nn::ActorModule> target_actor_;  // null without
   nn::CriticModule critic_, target_critic_;
   PolicyAverage average_;
   nn::Adam critic_optimiser_, actor_optimiser_;
@@ -74,12 +79,13 @@ class DeterministicAgent final : public Agent {
   AgentState state_;
 
   // Arrays and numbers of an update. Dimensions: b rows of this replica, A actions.
-  const Array target_action_;              // a' (b, A)
+  const Array noisy_action_;               // a' or a~ (b, A)
   const Array targets_;                    // y (b)
   std::vector<Array> q_gradients_;         // (b) for each critic
-  std::vector<Array> actors_q_gradients_;  // (b), of the actor's loss: the first critic's only
+  std::vector<Array> actors_q_gradients_;  // (b), of the actor's loss: absent for unused critics
   const Array action_gradient_;            // (b, A)
   const Number rate_factor_;               // of the optimisers
+  const Number noise_;                     // deviation
   const CriticNumbers critic_numbers_;
   const Number critic_squares_, actor_squares_;  // of gradients
   const Number actor_loss_, saturation_;
@@ -104,8 +110,11 @@ DeterministicAgent::DeterministicAgent(const Config& config, const ObservationSp
       features_(encoder_ ? &encoder_->features() : nullptr),
       actor_(PlanActor(config, spec, "actor"), features_, /*trains_encoder=*/false, Use::kTraining,
              engine->modules()),
-      target_actor_(PlanActor(config, spec, "target_actor"), features_, /*trains_encoder=*/false,
-                    Use::kInference, engine->modules()),
+      target_actor_(options.target_actor
+                        ? std::make_unique<nn::ActorModule>(
+                              PlanActor(config, spec, "target_actor"), features_,
+                              /*trains_encoder=*/false, Use::kInference, engine->modules())
+                        : nullptr),
       critic_(nn::PlanCritic(config.network, spec, "critic", options.critics), features_,
               /*trains_encoder=*/true, Use::kTraining, engine->modules()),
       target_critic_(nn::PlanCritic(config.network, spec, "target", options.critics), features_,
@@ -115,18 +124,21 @@ DeterministicAgent::DeterministicAgent(const Config& config, const ObservationSp
                         engine->modules()),
       actor_optimiser_({&actor_.parameters()}, ActorStep(config.learner), engine->modules()),
       standard_(config.learner, engine, spec.VectorSize()),
-      target_action_(engine->NewArray(spec.action_size)),
+      noisy_action_(engine->NewArray(spec.action_size)),
       targets_(engine->NewArray(1)),
       actors_q_gradients_(size_t(options.critics)),
       action_gradient_(engine->NewArray(spec.action_size)),
       rate_factor_(engine->NewNumber()),
+      noise_(engine->NewNumber()),
       critic_numbers_(NewCriticNumbers(options.critics, engine)),
       critic_squares_(engine->NewNumber()),
       actor_squares_(engine->NewNumber()),
       actor_loss_(engine->NewNumber()),
       saturation_(engine->NewNumber()) {
   for (int i = 0; i < options.critics; ++i) q_gradients_.push_back(engine->NewArray(1));
-  actors_q_gradients_[0] = engine->NewArray(1);
+  for (int i = 0; i < options.actor_critics; ++i) {
+    actors_q_gradients_[size_t(i)] = engine->NewArray(1);
+  }
   const auto seed = uint64_t(config.seed);
   if (encoder_) {
     encoder_->parameters().Initialise(seed);
@@ -136,11 +148,11 @@ DeterministicAgent::DeterministicAgent(const Config& config, const ObservationSp
   critic_.parameters().Initialise(seed);
   actor_.Refresh();
   for (nn::Module* module : CriticModules()) module->Refresh();
-  nn::CopyParameters(actor_, &target_actor_);
+  if (target_actor_) nn::CopyParameters(actor_, target_actor_.get());
   nn::CopyParameters(critic_, &target_critic_);
   average_.Copy();
   state_.Add(&actor_);
-  state_.Add(&target_actor_);
+  if (target_actor_) state_.Add(target_actor_.get());
   state_.Add(&critic_);
   state_.Add(&target_critic_);
   average_.AddTo(&state_);
@@ -155,14 +167,18 @@ std::vector<nn::Module*> DeterministicAgent::CriticModules() {
   return {encoder_.get(), &critic_};
 }
 
+// Whether there is noise depends on the options alone, so that all updates have the same
+// operations.
+Array DeterministicAgent::WithNoise(Array action, Random* random) {
+  if (options_.noise.Most() == 0) return action;
+  engine_->AddClippedNoise(action, noise_, options_.noise_clip, random, noisy_action_);
+  return noisy_action_;
+}
+
 void DeterministicAgent::ComputeTargets(const Transitions& batch, Random* random) {
   Encode(batch.next_obs_frames, nn::Statistics::kRunning);
-  Array action = target_actor_.Forward(batch.next_obs_vector).action;
-  if (options_.target_noise > 0) {
-    engine_->AddClippedNoise(action, options_.target_noise, options_.target_noise_clip, random,
-                             target_action_);
-    action = target_action_;
-  }
+  nn::ActorModule& actor = target_actor_ ? *target_actor_ : actor_;
+  const Array action = WithNoise(actor.Forward(batch.next_obs_vector).action, random);
   target_critic_.ForwardObservation(batch.next_obs_vector);
   target_critic_.ForwardAction(action);
   engine_->Targets({.reward = batch.reward,
@@ -193,14 +209,19 @@ void DeterministicAgent::UpdateCritic(const Transitions& batch, const OnStageEnd
   on_stage_end(UpdateStage::kOptimiser);
 }
 
-// The encoder still holds the features of obs.
-void DeterministicAgent::UpdateActor(const Transitions& batch, const OnStageEnd& on_stage_end) {
+// The encoder still holds the features of obs. Neither noise nor clipping of the action changes the
+// gradient: da~ / dmu(o) counts as 1.
+void DeterministicAgent::UpdateActor(const Transitions& batch, Random* random,
+                                     const OnStageEnd& on_stage_end) {
   const auto [mean, log_std, action] = actor_.Forward(batch.obs_vector);
   critic_.ForwardObservation(batch.obs_vector);
-  critic_.ForwardAction(action);
+  critic_.ForwardAction(options_.noisy_actor_loss ? WithNoise(action, random) : action);
   on_stage_end(UpdateStage::kForward);
-  engine_->DeterministicActorLoss(critic_.q(0), mean, action, config_.learner.mean_penalty,
-                                  actors_q_gradients_[0], actor_loss_, saturation_);
+  const std::vector<Array> q = ValuesOf(critic_);
+  const auto judges = size_t(options_.actor_critics);
+  engine_->DeterministicActorLoss(
+      std::span(q).first(judges), mean, action, config_.learner.mean_penalty,
+      std::span(actors_q_gradients_).first(judges), actor_loss_, saturation_);
   critic_.BackwardAction(actors_q_gradients_, action_gradient_);
   actor_.BackwardAction(action_gradient_, config_.learner.mean_penalty);
   engine_->Gather(&actor_optimiser_, actor_squares_);
@@ -215,7 +236,8 @@ void DeterministicAgent::UpdateActor(const Transitions& batch, const OnStageEnd&
 
 void DeterministicAgent::MoveTargetsAndAverage() {
   if (Due(config_.learner.target_period)) {
-    const nn::Following targets[] = {{&critic_, &target_critic_}, {&actor_, &target_actor_}};
+    std::vector<nn::Following> targets{{&critic_, &target_critic_}};
+    if (target_actor_) targets.push_back({&actor_, target_actor_.get()});
     engine_->MoveTowards(float(config_.learner.tau), targets);
   }
   average_.Move(float(config_.learner.average_rate));
@@ -226,6 +248,7 @@ std::vector<UpdateOutcome> DeterministicAgent::Submit(const BatchView& drawn,
   const nn::ThreadScope scope(engine_->modules().threads);
   const double rate_factor = config_.learner.rate_factor.At(drawn.stored_steps);
   engine_->Set(rate_factor_, rate_factor);
+  engine_->Set(noise_, options_.noise.At(drawn.stored_steps));
   engine_->Begin(drawn);
   const Transitions batch = standard_.Seen(engine_->Take(drawn));
   Random random(StreamKey(uint64_t(config_.seed), StreamRole::kLearnerUpdate, updates_));
@@ -234,7 +257,7 @@ std::vector<UpdateOutcome> DeterministicAgent::Submit(const BatchView& drawn,
   ComputeTargets(batch, &random);
   on_stage_end(UpdateStage::kForward);
   UpdateCritic(batch, on_stage_end);
-  if (Due(config_.learner.actor_period)) UpdateActor(batch, on_stage_end);
+  if (Due(config_.learner.actor_period)) UpdateActor(batch, &random, on_stage_end);
   MoveTargetsAndAverage();
   figures_.SetValue(kLearningRate, CriticStep(config_.learner).rate * rate_factor);
   standard_.Add(drawn);

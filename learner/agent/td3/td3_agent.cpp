@@ -7,8 +7,8 @@ std::unique_ptr<Agent> MakeTd3Agent(const Config& config, const ObservationSpec&
                                     Engine* engine) {
   return MakeDeterministicAgent(config, spec,
                                 {.critics = 2,
-                                 .target_noise = config.td3.target_noise,
-                                 .target_noise_clip = config.td3.target_noise_clip},
+                                 .noise = Schedule::Constant(config.td3.target_noise),
+                                 .noise_clip = config.td3.target_noise_clip},
                                 engine);
 }
 

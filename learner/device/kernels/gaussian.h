@@ -134,7 +134,8 @@ struct AddClippedNoise {
   using Shared = NoShared;
 
   int64_t n = 0;
-  double sigma = 0, limit = 0;
+  const double* sigma = nullptr;
+  double limit = 0;
   const float* action = nullptr;
   const double* noise = nullptr;
   float* noisy = nullptr;
@@ -145,7 +146,7 @@ struct AddClippedNoise {
   template <class Block>
   SHOAL_KERNEL void Run(Block& block, Shared&) const {
     ForElements(block, block.index(), n, [&](int64_t i) {
-      const double added = Clamp(sigma * noise[i], -limit, limit);
+      const double added = Clamp(*sigma * noise[i], -limit, limit);
       noisy[i] = float(Clamp(action[i] + added, -1.0, 1.0));
     });
   }

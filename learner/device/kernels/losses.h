@@ -4,6 +4,7 @@
 // labels; arrays are (B) f32 unless said otherwise.
 #pragma once
 
+#include "learner/device/kernels/critic_loss.h"
 #include "learner/device/kernels/frame.h"
 #include "learner/device/kernels/gaussian.h"
 #include "learner/device/kernels/numbers.h"
@@ -48,18 +49,20 @@ struct EntropyActorLoss {
   }
 };
 
-// Eq. 19: L = -mean_b q + mean_penalty mean_ba m^2, rounded to f32; dL/dq = -1 / B. m (B, A): the
-// policy's outputs before tanh. saturation: the share of |action| > 0.99.
+// Eq. 19 and 32: L = -mean_b min_i q_i + mean_penalty mean_ba m^2, rounded to f32; dL/dq_i = -1 / B
+// for the smallest (the first one on a tie), else 0. m (B, A): the policy's outputs before tanh.
+// saturation: the share of |action| > 0.99.
 struct DeterministicActorLoss {
   static constexpr int kThreads = 256;
   struct Shared {
     Reduction<Sums<3>, kThreads> sums;
   };
 
-  int rows = 0, actions = 0;
-  const float *q = nullptr, *mean = nullptr, *action = nullptr;  // (B), (B, A), (B, A)
+  int rows = 0, actions = 0, critics = 0;
+  const float* q[kMostCritics] = {};
+  const float *mean = nullptr, *action = nullptr;  // (B, A)
   double mean_penalty = 0;
-  float* q_gradient = nullptr;
+  float* q_gradient[kMostCritics] = {};
   double *loss = nullptr, *saturation = nullptr;
 
   int blocks() const { return 1; }
@@ -71,8 +74,13 @@ struct DeterministicActorLoss {
     block.Threads([&](int thread) {
       auto sums = Sums<3>::Zero();
       ForAll<kThreads>(thread, rows, [&](int64_t b) {
-        q_gradient[b] = -1.f / float(rows);
-        sums[0] -= double(q[b]);
+        int smallest = 0;
+        for (int i = 1; i < critics; ++i) {
+          if (q[i][b] < q[smallest][b]) smallest = i;
+        }
+        for (int i = 0; i < critics; ++i)
+          q_gradient[i][b] = i == smallest ? -1.f / float(rows) : 0.f;
+        sums[0] -= double(q[smallest][b]);
       });
       ForAll<kThreads>(thread, numbers, [&](int64_t i) {
         sums[1] += double(mean[i]) * mean[i];

@@ -188,10 +188,10 @@ TEST_F(CpuEngineTest, AnEntropyActorsLossAndItsWayToThePolicy) {
 }
 
 TEST_F(CpuEngineTest, ADeterministicActorsNoiseAndLoss) {
-  const Array action = Filled(kActions, 1), mean = Filled(kActions, 2), q = Filled(1, 3);
-  const Array noisy = Poisoned(kActions), gradient = Poisoned(1);
+  const Array action = Filled(kActions, 1), mean = Filled(kActions, 2);
+  const Array noisy = Poisoned(kActions);
   Random random(5), same(5);
-  engine_.AddClippedNoise(action, 0.8, 0.5, &random, noisy);
+  engine_.AddClippedNoise(action, Holding(0.8), 0.5, &random, noisy);
   Values expected;
   for (const double a : Of(action)) {
     expected.push_back(std::clamp(a + std::clamp(0.8 * same.Normal(), -0.5, 0.5), -1.0, 1.0));
@@ -200,14 +200,27 @@ TEST_F(CpuEngineTest, ADeterministicActorsNoiseAndLoss) {
 
   const Number loss = Holding(NAN), saturation = Holding(NAN);
   HostValues(action)[0] = -0.995f;
-  engine_.DeterministicActorLoss(q, mean, action, 0.1, gradient, loss, saturation);
-  engine_.Gather(&adam_, Holding(NAN));
-  double expected_loss = 0;
-  for (const double value : Of(q)) expected_loss -= value / kBatch;
-  for (const double m : Of(mean)) expected_loss += 0.1 * m * m / (kBatch * kActions);
-  EXPECT_NEAR(engine_.Read(loss), expected_loss, kTolerance);
-  EXPECT_NEAR(engine_.Read(saturation), 1.0 / (kBatch * kActions), kTolerance);
-  EXPECT_THAT(HostValues(gradient), Each(testing::FloatEq(-1.f / kBatch)));
+  const std::array q{Filled(1, 3), Filled(1, 4)};
+  HostValues(q[1])[2] = HostValues(q[0])[2];  // a tie
+  double penalty = 0;
+  for (const double m : Of(mean)) penalty += 0.1 * m * m / (kBatch * kActions);
+  for (const size_t critics : {1u, 2u}) {
+    const std::array gradients{Poisoned(1), Poisoned(1)};
+    engine_.DeterministicActorLoss(std::span(q).first(critics), mean, action, 0.1,
+                                   std::span(gradients).first(critics), loss, saturation);
+    engine_.Gather(&adam_, Holding(NAN));
+    double expected_loss = penalty;
+    for (size_t b = 0; b < kBatch; ++b) {
+      const double first = Of(q[0])[b], second = critics == 1 ? INFINITY : Of(q[1])[b];
+      expected_loss -= std::min(first, second) / kBatch;
+      EXPECT_FLOAT_EQ(HostValues(gradients[0])[b], first <= second ? -1.f / kBatch : 0);
+      if (critics == 2) {
+        EXPECT_FLOAT_EQ(HostValues(gradients[1])[b], first <= second ? 0 : -1.f / kBatch);
+      }
+    }
+    EXPECT_NEAR(engine_.Read(loss), expected_loss, kTolerance);
+    EXPECT_NEAR(engine_.Read(saturation), 1.0 / (kBatch * kActions), kTolerance);
+  }
 }
 
 TEST_F(CpuEngineTest, ALabelsLossMeansAndOperationsOfTheHost) {

@@ -107,7 +107,7 @@ void RecordingEngine::SquashedGaussianFigures(const SquashedSample& sample, Numb
   engine_->SquashedGaussianFigures(sample, entropy, saturation);
 }
 
-void RecordingEngine::AddClippedNoise(Array action, double sigma, double limit, Random* random,
+void RecordingEngine::AddClippedNoise(Array action, Number sigma, double limit, Random* random,
                                       Array noisy) {
   Keep("AddClippedNoise", action, sigma, limit, noisy);
   engine_->AddClippedNoise(action, sigma, limit, random, noisy);
@@ -137,10 +137,12 @@ void RecordingEngine::EntropyActorLoss(Array log_prob, std::span<const Array> q,
   engine_->EntropyActorLoss(log_prob, q, temperature, q_gradients, loss);
 }
 
-void RecordingEngine::DeterministicActorLoss(Array q, Array mean, Array action, double mean_penalty,
-                                             Array q_gradient, Number loss, Number saturation) {
-  Keep("DeterministicActorLoss", q, mean, action, mean_penalty, q_gradient, loss, saturation);
-  engine_->DeterministicActorLoss(q, mean, action, mean_penalty, q_gradient, loss, saturation);
+void RecordingEngine::DeterministicActorLoss(std::span<const Array> q, Array mean, Array action,
+                                             double mean_penalty,
+                                             std::span<const Array> q_gradients, Number loss,
+                                             Number saturation) {
+  Keep("DeterministicActorLoss", q, mean, action, mean_penalty, q_gradients, loss, saturation);
+  engine_->DeterministicActorLoss(q, mean, action, mean_penalty, q_gradients, loss, saturation);
 }
 
 void RecordingEngine::LabelLoss(Array y, Array labels, float weight, float unit, Array gradient,

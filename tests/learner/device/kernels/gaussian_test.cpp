@@ -135,7 +135,7 @@ TEST_F(GaussianKernels, NoiseIsClippedTwice) {
   const std::vector<double> noise(draws.begin(), draws.end());
   float* noisy = Out(kNumbers);
   Run(AddClippedNoise{.n = kNumbers,
-                      .sigma = 0.4,
+                      .sigma = In(std::vector<double>{0.4}),
                       .limit = 0.5,
                       .action = In(action),
                       .noise = In(noise),

@@ -120,22 +120,33 @@ TEST_F(LossKernels, ActorsWithEntropy) {
 
 TEST_F(LossKernels, ActorsWithoutEntropy) {
   constexpr int kRows = 131, kActions = 3;
-  const std::vector<float> q = Random(kRows), mean = Random(kRows * kActions, -2, 2);
+  const std::vector<float> mean = Random(kRows * kActions, -2, 2);
   const std::vector<float> action = Random(kRows * kActions, -1.1, 1.1);
-  for (const double penalty : {0.0, 0.7}) {
+  std::vector<std::vector<float>> q{Random(kRows), Random(kRows), Random(kRows)};
+  q[1][7] = q[0][7] = -2;  // a tie
+  for (const int critics : {1, 2, 3}) {
+    const double penalty = critics == 1 ? 0 : 0.7;
     kernels::DeterministicActorLoss kernel{.rows = kRows,
                                            .actions = kActions,
-                                           .q = In(q),
+                                           .critics = critics,
                                            .mean = In(mean),
                                            .action = In(action),
                                            .mean_penalty = penalty,
-                                           .q_gradient = Out(kRows),
                                            .loss = Cell(),
                                            .saturation = Cell()};
+    std::vector<const float*> values;
+    std::vector<std::vector<float>> gradients(q.size(), std::vector<float>(kRows));
+    std::vector<float*> to;
+    for (int i = 0; i < critics; ++i) {
+      kernel.q[i] = In(q[size_t(i)]);
+      kernel.q_gradient[i] = Out(kRows);
+      values.push_back(q[size_t(i)].data());
+      to.push_back(gradients[size_t(i)].data());
+    }
     Run(kernel);
-    ExpectNumber(kernel.loss, learner::DeterministicActorLoss(q, mean, penalty));
+    ExpectNumber(kernel.loss, learner::DeterministicActorLoss(kRows, values, mean, penalty, to));
     ExpectNumber(kernel.saturation, SaturatedShare(action));
-    ExpectClose(kernel.q_gradient, std::vector<float>(kRows, -1.f / kRows), 0);
+    for (int i = 0; i < critics; ++i) ExpectClose(kernel.q_gradient[i], gradients[size_t(i)], 0);
   }
 }
 
