@@ -5,7 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <vector>
+
+#include "common/base/files.h"
+#include "common/nn/safetensors.h"
+#include "tests/support/paths.h"
+#include "tests/support/shared_numbers.h"
 
 namespace shoal::replay {
 namespace {
@@ -74,6 +80,30 @@ TEST(RandomShift, ByHand) {
   EXPECT_EQ(out, (std::vector<uint8_t>{2, 3, 3, 5, 6, 6}));
   ShiftPlanes(in.data(), 1, 2, 3, {.dx = -2, .dy = 1}, out.data());
   EXPECT_EQ(out, (std::vector<uint8_t>{4, 4, 4, 4, 4, 4}));
+}
+
+// The paper's program samples a grid by bilinear interpolation. Its points are centres of pixels,
+// so that the result is the crop, except for rounding of the points' positions in f32.
+TEST(RandomShift, IsTheGridSampleOfDrqV2) {
+  constexpr int kPad = 4, kPlanes = 2, kSide = 12;
+  constexpr size_t kPicture = size_t{kPlanes} * kSide * kSide;
+  // Recorded by tests/comparison/drqv2_updates.py, which describes the file.
+  const nn::TensorMap recorded =
+      nn::ReadSafetensors(ReadFile(GoldenPath("drqv2/shifts.safetensors")), "shifts");
+  const nn::NamedTensor& tensor = recorded.at("shifted");
+  std::vector<uint8_t> pictures((2 * kPad + 1) * kPicture), shifted(kPicture);
+  FillBytes("shift.pixels", pictures);
+  ASSERT_EQ(tensor.data.size(), pictures.size() * sizeof(float));
+  std::vector<float> expected(pictures.size());
+  std::memcpy(expected.data(), tensor.data.data(), tensor.data.size());
+  for (int k = 0; k <= 2 * kPad; ++k) {
+    const size_t first = static_cast<size_t>(k) * kPicture;
+    ShiftPlanes(pictures.data() + first, kPlanes, kSide, kSide, {.dx = k - kPad, .dy = kPad - k},
+                shifted.data());
+    for (size_t i = 0; i < kPicture; ++i) {
+      ASSERT_NEAR(shifted[i], expected[first + i], 1e-3) << k << " " << i;
+    }
+  }
 }
 
 TEST(RandomShift, DrawsEveryOffsetEquallyOften) {
