@@ -93,8 +93,10 @@ class PolicyDraw final : public Memoryless {
 
 class OrnsteinUhlenbeck final : public Exploration {
  public:
-  OrnsteinUhlenbeck(const ExplorationConfig& config, double factor, int envs, int action_size)
+  OrnsteinUhlenbeck(const ExplorationConfig& config, const Schedule& sigma, double factor, int envs,
+                    int action_size)
       : config_(config),
+        sigma_(sigma),
         factor_(factor),
         noise_(static_cast<size_t>(envs),
                std::vector<double>(static_cast<size_t>(action_size), 0.0)) {
@@ -102,7 +104,7 @@ class OrnsteinUhlenbeck final : public Exploration {
   }
 
   void OnEnvSteps(uint64_t run_env_steps) override {
-    step_deviation_ = factor_ * config_.sigma.At(run_env_steps) * std::sqrt(config_.dt);
+    step_deviation_ = factor_ * sigma_.At(run_env_steps) * std::sqrt(config_.dt);
   }
   void BeginEpisode(int e) override { std::ranges::fill(noise_[static_cast<size_t>(e)], 0.0); }
   void Act(int e, const nn::PolicyOutput& policy, Random& stream,
@@ -124,6 +126,7 @@ class OrnsteinUhlenbeck final : public Exploration {
 
  private:
   const ExplorationConfig config_;
+  const Schedule sigma_;
   const double factor_;
   double step_deviation_ = 0;
   std::vector<std::vector<double>> noise_;  // (E, A)
@@ -133,15 +136,17 @@ class OrnsteinUhlenbeck final : public Exploration {
 
 std::unique_ptr<Exploration> MakeExploration(const Config& config, int envs, int action_size,
                                              double factor) {
+  const Schedule& sigma = ExplorationSigma(config);
   switch (ExplorationKindOf(config)) {
     case ExplorationKind::kSquashedGaussian:
       return std::make_unique<SquashedGaussian>(static_cast<float>(factor));
     case ExplorationKind::kGaussian:
-      return std::make_unique<Gaussian>(config.exploration.sigma, factor);
+      return std::make_unique<Gaussian>(sigma, factor);
     case ExplorationKind::kPolicy:
       return std::make_unique<PolicyDraw>();
     case ExplorationKind::kOrnsteinUhlenbeck:
-      return std::make_unique<OrnsteinUhlenbeck>(config.exploration, factor, envs, action_size);
+      return std::make_unique<OrnsteinUhlenbeck>(config.exploration, sigma, factor, envs,
+                                                 action_size);
   }
   CHECK(false) << "an exploration without a class";
   return nullptr;

@@ -10,8 +10,9 @@
 //   policy              u = mean + exp(log_std) eps,   a = clip(u, -1, 1)
 //                       log pi(u) = sum_j -eps_j^2 / 2 - log_std_j - log(2 pi) / 2       (Eq. 22)
 //
-// eps ~ N(0, I); sigma follows a schedule over the run's env steps; f is the actor's own factor.
-// ou: Ornstein-Uhlenbeck noise as in Lillicrap et al. 2015, arXiv:1509.02971, section 7.
+// eps ~ N(0, I); sigma, of ExplorationSigma, follows a schedule over the run's env steps; f is the
+// actor's own factor. ou: Ornstein-Uhlenbeck noise as in Lillicrap et al. 2015, arXiv:1509.02971,
+// section 7.
 //
 // Dimensions: E environments, A components of an action.
 #pragma once

@@ -13,6 +13,9 @@ constexpr AlgorithmKind kKinds[] = {
     {.name = "sac", .squashed_gaussian = true, .encoder_options = true, .own_section = "sac."},
     {.name = "td3", .own_section = "td3."},
     {.name = "ddpg"},
+    {.name = "drqv2",
+     .own_section = "drqv2.",
+     .own_noise = [](const Config& config) -> const Schedule& { return config.drqv2.noise; }},
     {.name = "ppo", .on_policy = true, .own_section = "ppo."},
 };
 

@@ -26,6 +26,8 @@ struct AlgorithmKind {
   bool encoder_options = false;  // accepts network.encoders and network.target_encoder
   // Section of keys that only algorithms with this section accept: "ppo."; empty = no section.
   std::string_view own_section = "";
+  // The algorithm's own deviation of the actors' noise, its key "noise"; null = exploration.sigma.
+  const Schedule& (*own_noise)(const Config& config) = nullptr;
 };
 
 std::span<const AlgorithmKind> AlgorithmKinds();

@@ -156,6 +156,14 @@ struct Td3Config {
   double target_noise_clip = 0.5;  // largest absolute value of the noise
 };
 
+// Noise on the actions of targets, of the actor's loss and of the training actors. The defaults are
+// those of Yarats et al. 2021, arXiv:2107.09645, for easy tasks.
+struct Drqv2Config {
+  Schedule noise{.start = 1, .end = 0.1, .env_steps = 100'000};  // standard deviation
+  // Largest absolute value of the noise in targets and in the actor's loss.
+  double noise_clip = 0.3;
+};
+
 // Noise that training actors add to their policy's actions (actor/acting/exploration.h).
 struct ExplorationConfig {
   std::string kind = "auto";                 // auto | squashed_gaussian | gaussian | ou
@@ -234,6 +242,7 @@ struct Config {
   SacConfig sac;
   PpoConfig ppo;
   Td3Config td3;
+  Drqv2Config drqv2;
   ExplorationConfig exploration;
   NetworkConfig network;
   EvalConfig eval;

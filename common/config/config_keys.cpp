@@ -209,7 +209,7 @@ std::vector<Key> LearnerKeys() {
                 "updates per actor and temperature update"),
       SHOAL_KEY(learner.target_period, (IntegerRange{1, 100'000}), "updates per target update"),
       SHOAL_KEY(learner.mean_penalty, (RealRange{0, 1e6}),
-                "td3, ddpg: weight, in the actor's loss, of the mean square of the policy's "
+                "td3, ddpg, drqv2: weight, in the actor's loss, of the mean square of the policy's "
                 "outputs before tanh; it prevents actions from staying saturated"),
       SHOAL_KEY(learner.normalise_vectors, AnyValue{},
                 "scale vectors by their running mean and deviation, which are stored with the "
@@ -303,13 +303,24 @@ std::vector<Key> Td3Keys() {
   };
 }
 
+std::vector<Key> Drqv2Keys() {
+  return {
+      SHOAL_KEY(drqv2.noise, (RealRange{0, 2}),
+                "standard deviation of the noise on the actions of targets, of the actor's loss "
+                "and of the training actors; a number, or a schedule over the run's env steps"),
+      SHOAL_KEY(drqv2.noise_clip, (RealRange{0, 2}),
+                "largest absolute value of that noise in targets and in the actor's loss; the "
+                "noise of the training actors has no such limit"),
+  };
+}
+
 std::vector<Key> ExplorationKeys() {
   return {
       SHOAL_KEY(exploration.kind, (Choices{{"auto", "squashed_gaussian", "gaussian", "ou"}}),
                 "noise of the training actors; auto = the algorithm's own"),
       SHOAL_KEY(exploration.sigma, (RealRange{0, 10}),
                 "standard deviation of gaussian and ou noise; a number, or a schedule over the "
-                "run's env steps"),
+                "run's env steps; drqv2 uses drqv2.noise instead"),
       SHOAL_KEY(exploration.theta, (RealRange{0, 1000}), "ou: pull towards zero per unit of time"),
       SHOAL_KEY(exploration.dt, (RealRange{0, 1, true}), "ou: units of time per env step"),
       SHOAL_KEY(
@@ -393,9 +404,10 @@ std::vector<Key> TransportKeys() {
 
 std::vector<Key> AllKeys() {
   std::vector<Key> all;
-  for (const auto& section : {RunKeys(), EnvKeys(), ObservationKeys(), RandomizationKeys(),
-                              ReplayKeys(), LearnerKeys(), SacKeys(), PpoKeys(), Td3Keys(),
-                              ExplorationKeys(), NetworkKeys(), EvalKeys(), TransportKeys()}) {
+  for (const auto& section :
+       {RunKeys(), EnvKeys(), ObservationKeys(), RandomizationKeys(), ReplayKeys(), LearnerKeys(),
+        SacKeys(), PpoKeys(), Td3Keys(), Drqv2Keys(), ExplorationKeys(), NetworkKeys(), EvalKeys(),
+        TransportKeys()}) {
     all.insert(all.end(), section.begin(), section.end());
   }
   return all;

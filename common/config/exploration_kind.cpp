@@ -19,6 +19,11 @@ ExplorationKind ExplorationKindOf(const Config& config) {
   return LearnsDeviation(config) ? ExplorationKind::kSquashedGaussian : ExplorationKind::kGaussian;
 }
 
+const Schedule& ExplorationSigma(const Config& config) {
+  const auto own_noise = AlgorithmKindOf(config).own_noise;
+  return own_noise != nullptr ? own_noise(config) : config.exploration.sigma;
+}
+
 std::string_view NameOf(ExplorationKind kind) {
   switch (kind) {
     case ExplorationKind::kSquashedGaussian:

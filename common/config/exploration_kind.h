@@ -19,6 +19,9 @@ bool LearnsDeviation(const Config& config);
 // policy explores by its own Gaussian, a deterministic policy by Gaussian noise.
 ExplorationKind ExplorationKindOf(const Config& config);
 
+// Standard deviation of gaussian and ou noise: the algorithm's own, else exploration.sigma.
+const Schedule& ExplorationSigma(const Config& config);
+
 // The value of the key exploration.kind that selects `kind`. "policy" for kPolicy, which the key
 // cannot select.
 std::string_view NameOf(ExplorationKind kind);

@@ -69,6 +69,8 @@ const std::vector<Names>& Table() {
       {"ppo.value_clip", {"clip_range_vf"}},
       {"ppo.value_weight", {"vf_coef"}},
       {"exploration.sigma", {"action_noise", "noise_std", "exploration_noise"}},
+      {"drqv2.noise", {"stddev_schedule"}},
+      {"drqv2.noise_clip", {"stddev_clip"}},
       {"exploration.random_steps", {"start_steps"}},
       {"network.hidden",
        {"net_arch", "hidden_sizes", "hidden_size", "hidden_dim", "hidden_layers", "hidden_units"}},

@@ -91,6 +91,13 @@ void ValidateExploration(const Config& config) {
         "deviation of its own; expected auto | gaussian | ou",
         config.learner.algorithm);
   }
+  const AlgorithmKind& algorithm = AlgorithmKindOf(config);
+  if (algorithm.own_noise != nullptr && exploration.sigma != ExplorationConfig().sigma) {
+    throw UsageError(
+        "exploration.sigma: the actors of learner.algorithm = {} explore with the noise of "
+        "{}noise; expected it unset",
+        algorithm.name, algorithm.own_section);
+  }
   RefuseNoiseKeys(config);
   if (exploration.theta * exploration.dt > 1) {
     throw UsageError(

@@ -11,6 +11,7 @@
 #include "common/config/learner_threads.h"
 #include "common/nn/parallel.h"
 #include "learner/agent/ddpg/ddpg_agent.h"
+#include "learner/agent/drqv2/drqv2_agent.h"
 #include "learner/agent/frame_figures.h"
 #include "learner/agent/ppo/ppo_agent.h"
 #include "learner/agent/replicated_agent.h"
@@ -29,6 +30,7 @@ constexpr Algorithm kAlgorithms[] = {
      .critics = 1,
      .sb3 = "DDPG",
      .make = MakeDdpgAgent},
+    {.name = "drqv2", .figures = kTwinFigures, .critics = 2, .sb3 = "TD3", .make = MakeDrqv2Agent},
     {.name = "ppo",
      .figures = kPpoFigures,
      .sb3 = "PPO",

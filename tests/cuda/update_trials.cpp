@@ -144,14 +144,14 @@ void TryUpdates(const UpdateTrials& what, const Trials& trials) {
     TryUpdatesOf(what.device, setting, schedule, limits, trials);
   };
   if (what.quick) {
-    for (const char* algorithm : {"sac", "td3", "ddpg"}) {
+    for (const char* algorithm : {"sac", "td3", "ddpg", "drqv2"}) {
       make({algorithm, "", kSingle}, {40, 10, 5, 8}, kVectors);
     }
     make({"sac", "compact", kSingle}, {6, 2, 2, 2}, kPixels);
     make({"ppo", "", kSingle}, {3, 1, 1, 8}, kRollouts);
     return;
   }
-  for (const char* algorithm : {"sac", "td3", "ddpg"}) {
+  for (const char* algorithm : {"sac", "td3", "ddpg", "drqv2"}) {
     make({algorithm, "", kSingle}, {200, 40, 40, 16}, kVectors);
     for (const char* encoder : {"compact", "drq", "nature", "spatial_softmax"}) {
       make({algorithm, encoder, kSingle}, {200, 20, 5, 16}, kPixels);

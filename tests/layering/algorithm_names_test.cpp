@@ -107,7 +107,7 @@ std::vector<std::string> FindNamed(const fs::path& root) {
 }
 
 TEST(AlgorithmNames, StandInTheirFolderAndInTheListsAlone) {
-  ASSERT_THAT(AlgorithmsOf(SourcePath("")), ElementsAre("ddpg", "ppo", "sac", "td3"));
+  ASSERT_THAT(AlgorithmsOf(SourcePath("")), ElementsAre("ddpg", "drqv2", "ppo", "sac", "td3"));
   EXPECT_THAT(FindNamed(SourcePath("")), IsEmpty());
 }
 

@@ -72,7 +72,7 @@ TEST(OwnAlgorithm, ADeviceRefusesIt) {
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(),
                  "learner.algorithm = averaged_ddpg: a device does not compute this algorithm, "
-                 "expected sac | td3 | ddpg | ppo");
+                 "expected sac | td3 | ddpg | drqv2 | ppo");
   }
 }
 

@@ -3,7 +3,7 @@
 // of the algorithm's MlpPolicy or CnnPolicy, for MODEL.set_parameters(FILE, exact_match=False).
 //
 //                       squashed Gaussian        deterministic        unsquashed Gaussian
-//   Shoal               (SAC)                    (TD3, DDPG)          (PPO)
+//   Shoal               (SAC)                    (TD3, DDPG, DrQ-v2)  (PPO)
 //   encoder.conv{i}     X.cnn.{2i}               X.cnn.{2i}           X.cnn.{2i}
 //   actor.trunk         X.linear.0               X.linear.0           X.linear.0
 //   actor.mlp.layer{i}  actor.latent_pi.{2i}     actor.mu.{2i}        mlp_extractor.policy_net.{2i}

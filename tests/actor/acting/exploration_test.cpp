@@ -146,6 +146,24 @@ TEST(GaussianNoise, FollowsItsScheduleOverTheRunsEnvSteps) {
   EXPECT_TRUE(LooksNormal(player.Noises(), 0, 0.1));
 }
 
+TEST(GaussianNoise, FollowsTheScheduleOfAnAlgorithmThatHasItsOwn) {
+  for (const char* kind : {"auto", "ou"}) {
+    Config config = ConfigOf(kind, Schedule::Constant(0.9));
+    config.learner.algorithm = "drqv2";
+    config.drqv2.noise = {0.2, 0.1, 1000};
+    config.exploration.dt = 1;
+    Player own(config);
+    config.learner.algorithm = "td3";
+    config.exploration.sigma = config.drqv2.noise;
+    Player same(config);
+    for (const uint64_t run_env_steps : {0u, 500u, 2000u}) {
+      own.exploration().OnEnvSteps(run_env_steps);
+      same.exploration().OnEnvSteps(run_env_steps);
+      for (int i = 0; i < 10; ++i) ASSERT_EQ(own.Act(), same.Act()) << kind << run_env_steps;
+    }
+  }
+}
+
 TEST(NoiseFactorOf, MultipliesTheNoiseOfEveryKind) {
   EXPECT_TRUE(LooksNormal(Player(ConfigOf("gaussian"), 0.5).Noises(), 0, 0.1));
   EXPECT_TRUE(LooksNormal(Player(ConfigOf("squashed_gaussian"), 0.5).Unsquashed(), kPolicyMean,

@@ -178,7 +178,7 @@ TEST(ToJson, ListsSectionsInTheOrderOfTheStruct) {
   }
   EXPECT_THAT(names,
               ElementsAre("env", "observation", "randomization", "replay", "learner", "sac", "ppo",
-                          "td3", "exploration", "network", "eval", "stop", "transport"));
+                          "td3", "drqv2", "exploration", "network", "eval", "stop", "transport"));
 }
 
 TEST(ConfigHash, ChangesWithWhatIsComputedButNotWithNameOrLength) {

@@ -49,6 +49,26 @@ TEST(Presets, FromPixelsTakeQualityNative) {
                                     "fetch-reach-pixels-ppo"}));
 }
 
+// The settings in which the published runs differ between tasks, and those that follow from them.
+TEST(Presets, Drqv2UpdatesInEverySecondEnvStepAndReducesItsNoise) {
+  int presets = 0;
+  for (const std::string& name : ListPresets()) {
+    if (!name.ends_with("-drqv2")) continue;
+    SCOPED_TRACE(name);
+    ++presets;
+    const Config config = LoadPreset(name);
+    EXPECT_EQ(name, "dmc-" + config.task + "-drqv2");
+    EXPECT_EQ(config.learner.algorithm, "drqv2");
+    EXPECT_EQ(config.env_steps * config.action_repeat, 500'000);
+    EXPECT_EQ(config.replay.samples_per_insert, Schedule::Constant(config.learner.batch / 2));
+    const bool medium = config.task == "reacher_easy" || config.task == "cheetah_run";
+    EXPECT_EQ(config.drqv2.noise, (Schedule{1, 0.1, medium ? 500'000 : 100'000}));
+    EXPECT_EQ(config.replay.n_step, config.task == "walker_walk" ? 1 : 3);
+    EXPECT_EQ(config.learner.batch, config.task == "walker_walk" ? 512 : 256);
+  }
+  EXPECT_EQ(presets, 6);
+}
+
 TEST(Presets, StateRendersNothing) {
   const Config config = LoadPreset("fetch-reach-state");
   EXPECT_FALSE(config.observation.pixels);

@@ -79,6 +79,18 @@ TEST(Validate, NoiseThatTheExplorationDoesNotAddIsRefused) {
   EXPECT_THAT(refusal("sac", "gaussian", "exploration.theta=0.2"), HasSubstr("exploration.theta"));
   EXPECT_EQ(refusal("td3", "auto", "exploration.sigma=0.3"), "");
   EXPECT_EQ(refusal("sac", "gaussian", "exploration.sigma=0.3"), "");
+  for (const char* kind : {"auto", "ou"}) {
+    EXPECT_EQ(
+        refusal("drqv2", kind, "exploration.sigma=0.3"),
+        "exploration.sigma: the actors of learner.algorithm = drqv2 explore with the noise of "
+        "drqv2.noise; expected it unset");
+    EXPECT_EQ(refusal("drqv2", kind, "drqv2.noise=0.3"), "");
+  }
+  EXPECT_EQ(refusal("td3", "auto", "drqv2.noise=0.3"),
+            "drqv2.noise belongs to learner.algorithm = drqv2: expected not to be set beside td3");
+  EXPECT_EQ(refusal("drqv2", "auto", "td3.target_noise=0.3"),
+            "td3.target_noise belongs to learner.algorithm = td3: expected not to be set beside "
+            "drqv2");
   for (const char* noise :
        {"exploration.sigma=0.3", "exploration.theta=0.2", "exploration.dt=0.02"}) {
     EXPECT_EQ(refusal("sac", "ou", noise), "");
@@ -86,7 +98,7 @@ TEST(Validate, NoiseThatTheExplorationDoesNotAddIsRefused) {
 }
 
 TEST(Validate, APolicyWithoutDeviationTakesNoKeysOfIt) {
-  for (const char* algorithm : {"td3", "ddpg"}) {
+  for (const char* algorithm : {"td3", "ddpg", "drqv2"}) {
     const auto refusal = [&](const std::function<void(Config*)>& change) {
       return Refusal([&](Config* config) {
         config->learner.algorithm = algorithm;
@@ -111,12 +123,12 @@ TEST(Validate, APolicyWithoutDeviationTakesNoKeysOfIt) {
 }
 
 TEST(Validate, OnlyADeterministicPolicyTakesAPenaltyOfItsMean) {
-  for (const char* algorithm : {"sac", "ppo", "td3", "ddpg"}) {
+  for (const std::string algorithm : {"sac", "ppo", "td3", "ddpg", "drqv2"}) {
     const std::string refusal = Refusal([&](Config* config) {
       config->learner.algorithm = algorithm;
       config->learner.mean_penalty = 0.1;
     });
-    const bool takes = algorithm == std::string("td3") || algorithm == std::string("ddpg");
+    const bool takes = algorithm != "sac" && algorithm != "ppo";
     EXPECT_EQ(refusal.find("learner.mean_penalty") == std::string::npos, takes) << refusal;
   }
 }
@@ -187,7 +199,7 @@ TEST(Validate, PrivilegedInputsAreOfSac) {
     c->sac.aux = {"object"};
   };
   EXPECT_EQ(Refusal(asymmetric), "");
-  for (const char* algorithm : {"td3", "ddpg"}) {
+  for (const char* algorithm : {"td3", "ddpg", "drqv2"}) {
     EXPECT_THAT(Refusal([&](Config* c) {
                   asymmetric(c);
                   c->learner.algorithm = algorithm;

@@ -61,7 +61,7 @@ TEST_P(CopiesTest, ATargetIsMadeOfAsManyRowsAsThereAreShiftsOfTheNextFrame) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, CopiesTest, testing::Values("sac", "td3", "ddpg"));
+INSTANTIATE_TEST_SUITE_P(Of, CopiesTest, testing::Values("sac", "td3", "ddpg", "drqv2"));
 
 // Every row of `from` twice, to `to`.
 template <class T>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The common part of TD3 and DDPG. Compares one update with a reference in double precision:
-// losses, and every gradient by central differences.
+// The common part of TD3, DDPG and DrQ-v2. Compares one update with a reference in double
+// precision: losses, and every gradient by central differences.
 //
 // The gradients are computed from Adam's first moment, which was 0 before: m = (1 - 0.9) g. Targets
 // differ much from the networks that they follow, so that an exchange of networks is detected.
@@ -27,10 +27,16 @@ using nn::reference::Values;
 struct Case {
   std::string algorithm;
   std::vector<std::string> critics;  // MLPs of a critic
-  bool smooth = false;               // noise on the target's action
+  double noise = 0, noise_clip = 0;  // on the target's action, at kStoredSteps
+  bool is_drqv2 = false;  // no target actor; the actor's loss has noise and the smaller Q
   double mean_penalty = 0;
   std::string name = algorithm;
+
+  std::string ActorOfTargets() const { return is_drqv2 ? "actor" : "target_actor"; }
 };
+
+// Half of the schedule of the noise.
+constexpr uint64_t kStoredSteps = 500;
 
 void PrintTo(const Case& each, std::ostream* out) { *out << each.name; }
 
@@ -39,7 +45,14 @@ Config ConfigOf(const Case& each) {
   config.learner.algorithm = each.algorithm;
   config.learner.actor_period = config.learner.target_period = 1;
   config.learner.mean_penalty = each.mean_penalty;
-  if (each.smooth) config.td3 = {.target_noise = 0.3, .target_noise_clip = 0.4};
+  if (each.is_drqv2) {
+    config.drqv2 = {.noise = {.start = each.noise + 0.2,
+                              .end = each.noise - 0.2,
+                              .env_steps = 2 * int64_t{kStoredSteps}},
+                    .noise_clip = each.noise_clip};
+  } else if (each.noise > 0) {
+    config.td3 = {.target_noise = each.noise, .target_noise_clip = each.noise_clip};
+  }
   return config;
 }
 
@@ -75,17 +88,23 @@ class DeterministicAgentTest : public testing::TestWithParam<Case> {
     return network.Mlp(head + "." + mlp, batch_size_, input);
   }
 
+  // Draws the noise of an action, and adds it.
+  Values WithNoise(Values action, Random* random) const {
+    const double most = GetParam().noise_clip;
+    if (GetParam().noise == 0) return action;
+    for (double& a : action) {
+      const double noise = std::clamp(GetParam().noise * random->Normal(), -most, most);
+      a = std::clamp(a + noise, -1.0, 1.0);
+    }
+    return action;
+  }
+
   Values Targets(const Network& network, Random* random) const {
     const BatchView view = data_.View();
     const Values features = network.Features(batch_size_, view.next_obs_frames.data());
     const Values vector = ToDoubles(view.next_obs_vector);
-    Values action = Action(network, "target_actor", features, vector);
-    if (GetParam().smooth) {
-      const double sigma = config_.td3.target_noise, most = config_.td3.target_noise_clip;
-      for (double& a : action) {
-        a = std::clamp(a + std::clamp(sigma * random->Normal(), -most, most), -1.0, 1.0);
-      }
-    }
+    const Values action =
+        WithNoise(Action(network, GetParam().ActorOfTargets(), features, vector), random);
     Values smallest(size_t(batch_size_), INFINITY);
     for (const std::string& mlp : GetParam().critics) {
       const Values q = Q(network, "target", mlp, features, vector, action);
@@ -111,11 +130,30 @@ class DeterministicAgentTest : public testing::TestWithParam<Case> {
     return loss / batch_size_;
   }
 
-  // The actor of `network` judged by the first critic of `judge`, on given features.
-  double ActorLoss(const Network& network, const Network& judge, const Values& features) const {
+  // The difference that noise and clipping make to the actor's actions. The gradient takes it as a
+  // constant.
+  Values NoiseOfActor(const Network& network, const Values& features, Random* random) const {
     const Values vector = ToDoubles(data_.View().obs_vector);
-    const Values q =
-        Q(judge, "critic", "q1", features, vector, Action(network, "actor", features, vector));
+    const Values action = Action(network, "actor", features, vector);
+    Values noise(action.size(), 0);
+    if (!GetParam().is_drqv2) return noise;
+    const Values noisy = WithNoise(action, random);
+    EXPECT_GT(std::ranges::count_if(noisy, [](double a) { return std::abs(a) == 1; }), 1);
+    for (size_t i = 0; i < noise.size(); ++i) noise[i] = noisy[i] - action[i];
+    return noise;
+  }
+
+  // The actor of `network` judged by the critics of `judge`, on given features.
+  double ActorLoss(const Network& network, const Network& judge, const Values& features,
+                   const Values& noise) const {
+    const Values vector = ToDoubles(data_.View().obs_vector);
+    Values action = Action(network, "actor", features, vector);
+    for (size_t i = 0; i < action.size(); ++i) action[i] += noise[i];
+    Values q = Q(judge, "critic", "q1", features, vector, action);
+    if (GetParam().is_drqv2) {
+      const Values second = Q(judge, "critic", "q2", features, vector, action);
+      for (size_t b = 0; b < q.size(); ++b) q[b] = std::min(q[b], second[b]);
+    }
     const Values mean = Mean(network, "actor", features, vector);
     const double squares = std::inner_product(mean.begin(), mean.end(), mean.begin(), 0.0);
     return -std::accumulate(q.begin(), q.end(), 0.0) / batch_size_ +
@@ -132,7 +170,9 @@ class DeterministicAgentTest : public testing::TestWithParam<Case> {
 TEST_P(DeterministicAgentTest, ALaterUpdateFollowsTheEquations) {
   agent_->Restore(Perturbed(agent_->AllTensors(), "target"), "later");
   const nn::TensorMap before = agent_->AllTensors();
-  const UpdateOutcome outcome = agent_->Update(data_.View());
+  BatchView view = data_.View();
+  view.stored_steps = kStoredSteps;
+  const UpdateOutcome outcome = agent_->Update(view);
   const nn::TensorMap after = agent_->AllTensors();
   Network network(before, config_.network, spec_);
   const Network updated(after, config_.network, spec_);
@@ -146,11 +186,13 @@ TEST_P(DeterministicAgentTest, ALaterUpdateFollowsTheEquations) {
 
   // The actor sees the features of before and the critic of after its step.
   const Values features = network.Features(batch_size_, data_.View().obs_frames.data());
-  const auto actor_loss = [&] { return ActorLoss(network, updated, features); };
+  const Values noise = NoiseOfActor(network, features, &random);
+  const auto actor_loss = [&] { return ActorLoss(network, updated, features, noise); };
   EXPECT_NEAR(Get(outcome, kActorLoss), actor_loss(), 1e-4 * std::abs(actor_loss()));
   ExpectMoments(after, "actor.", &network, actor_loss);
 
-  // And both targets follow by tau.
+  // And the targets follow by tau.
+  EXPECT_EQ(after.contains("target_actor.mlp.output.weight"), !GetParam().is_drqv2);
   for (const auto& [target, online] :
        {std::pair{"target.", "critic."}, {"target_actor.", "actor."}}) {
     for (const auto& [name, tensor] : after) {
@@ -177,7 +219,9 @@ TEST_P(DeterministicAgentTest, ActorAndTargetsMoveInEveryPeriodthUpdate) {
     EXPECT_EQ(!Differences(before, after, "actor.").empty(), u % 2 == 0) << u;
     EXPECT_EQ(outcome.figures.Get(kActorLoss).has_value(), u % 2 == 0) << u;
     EXPECT_EQ(!Differences(before, after, "target.").empty(), u % 3 == 0) << u;
-    EXPECT_EQ(!Differences(before, after, "target_actor.").empty(), u >= 2 && u % 3 == 0) << u;
+    EXPECT_EQ(!Differences(before, after, "target_actor.").empty(),
+              !GetParam().is_drqv2 && u >= 2 && u % 3 == 0)
+        << u;
   }
 }
 
@@ -201,8 +245,10 @@ TEST_P(DeterministicAgentTest, RestoreRefusesWhatDoesNotFitAndChangesNothing) {
   const auto other = MakeAgent(config_, spec_, nn::Precision::kF32);
   other->Update(data_.View());
   const nn::TensorMap before = agent_->AllTensors();
-  for (const char* name : {"encoder.conv1.bias", "target_actor.mlp.output.weight",
-                           "average.actor.mlp.output.bias", "adam.steps.actor", "agent.updates"}) {
+  const std::string actor_of_targets = GetParam().ActorOfTargets() + ".mlp.output.weight";
+  for (const std::string& name : {std::string("encoder.conv1.bias"), actor_of_targets,
+                                  std::string("average.actor.mlp.output.bias"),
+                                  std::string("adam.steps.actor"), std::string("agent.updates")}) {
     nn::TensorMap tensors = other->AllTensors();
     ASSERT_EQ(tensors.erase(name), 1u) << name;
     EXPECT_THAT([&] { agent_->Restore(tensors, "checkpoint 5"); },
@@ -244,16 +290,29 @@ TEST_P(DeterministicAgentTest, OnlyAPenaltyMovesASaturatedPolicy) {
   EXPECT_EQ(moved, GetParam().mean_penalty > 0);
 }
 
-TEST_P(DeterministicAgentTest, LearnsABandit) { EXPECT_LT(BanditError(config_, MakeAgent), 0.08); }
+TEST_P(DeterministicAgentTest, LearnsABandit) {
+  Config config = config_;
+  config.drqv2 = Config().drqv2;
+  EXPECT_LT(BanditError(config, MakeAgent), 0.08);
+}
 
 INSTANTIATE_TEST_SUITE_P(Of, DeterministicAgentTest,
-                         testing::Values(Case{"td3", {"q1", "q2"}, /*smooth=*/true},
-                                         Case{"ddpg", {"q1"}, /*smooth=*/false},
+                         testing::Values(Case{.algorithm = "td3",
+                                              .critics = {"q1", "q2"},
+                                              .noise = 0.3,
+                                              .noise_clip = 0.4},
+                                         Case{.algorithm = "ddpg", .critics = {"q1"}},
                                          Case{.algorithm = "td3",
                                               .critics = {"q1", "q2"},
-                                              .smooth = true,
+                                              .noise = 0.3,
+                                              .noise_clip = 0.4,
                                               .mean_penalty = 0.7,
-                                              .name = "td3_with_a_penalty"}),
+                                              .name = "td3_with_a_penalty"},
+                                         Case{.algorithm = "drqv2",
+                                              .critics = {"q1", "q2"},
+                                              .noise = 1.5,
+                                              .noise_clip = 1.3,
+                                              .is_drqv2 = true}),
                          [](const auto& each) { return each.param.name; });
 
 }  // namespace

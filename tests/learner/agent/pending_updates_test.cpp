@@ -129,6 +129,7 @@ const DeferringCase kDeferringCases[] = {
      }},
     {"td3", [](Config* config) { config->learner.algorithm = "td3"; }},
     {"ddpg", [](Config* config) { config->learner.algorithm = "ddpg"; }},
+    {"drqv2", [](Config* config) { config->learner.algorithm = "drqv2"; }},
 };
 
 INSTANTIATE_TEST_SUITE_P(Of, PendingUpdatesTest, testing::ValuesIn(kDeferringCases),

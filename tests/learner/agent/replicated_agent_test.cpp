@@ -152,6 +152,7 @@ const Case kCases[] = {
     {"sac_clipped", [](Config* config) { config->learner.max_grad_norm = 0.1; }},
     {"td3", [](Config* config) { config->learner.algorithm = "td3"; }},
     {"ddpg", [](Config* config) { config->learner.algorithm = "ddpg"; }},
+    {"drqv2", [](Config* config) { config->learner.algorithm = "drqv2"; }},
 };
 
 INSTANTIATE_TEST_SUITE_P(Of, ReplicatedAgentTest, testing::ValuesIn(kCases),

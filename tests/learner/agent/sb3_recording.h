@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Updates of Stable-Baselines3, and an agent that starts from the same weights.
-// tests/comparison/sb3_updates.py recorded the updates and describes the files.
+// Updates of Stable-Baselines3 or PyTorch, and an agent that starts from the same weights.
+// tests/comparison/sb3_updates.py and drqv2_updates.py recorded the updates and describe the files.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -41,11 +41,11 @@ class Sb3Recording {
  public:
   static constexpr int kUpdates = 4;
 
+  // `name`: a file of tests/golden, without ".safetensors".
   explicit Sb3Recording(const std::string& name)
-      : recorded_(nn::ReadSafetensors(ReadFile(GoldenPath("sb3/" + name + ".safetensors")), name)) {
-  }
+      : recorded_(nn::ReadSafetensors(ReadFile(GoldenPath(name + ".safetensors")), name)) {}
 
-  // Maps a layer of Stable-Baselines3 to a layer of Shoal, or to part number `part` of `parts`
+  // Maps a recorded layer to a layer of Shoal, or to part number `part` of `parts`
   // equal parts of Shoal's layer. The names are without ".weight" and ".bias". `scale`: factor of
   // the weights.
   void Add(const std::string& ours, const std::string& theirs, int part = 0, int parts = 1,

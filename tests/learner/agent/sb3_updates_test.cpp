@@ -24,7 +24,7 @@ void PrintTo(const RecordedUpdates& each, std::ostream* out) { *out << each.name
 
 class Sb3UpdatesTest : public testing::TestWithParam<RecordedUpdates> {
  protected:
-  Sb3UpdatesTest() : recording_(GetParam().name) {
+  Sb3UpdatesTest() : recording_(std::string("sb3/") + GetParam().name) {
     spec_.task = "test";
     spec_.blocks = {{"observation", kVector}};
     spec_.action_size = kActions;
@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(Of, Sb3UpdatesTest,
 // The preset's networks and rates, in small: SAC of CnnPolicy.
 class Sb3NatureTest : public testing::Test {
  protected:
-  Sb3NatureTest() : recording_("sac") {
+  Sb3NatureTest() : recording_("sb3/sac") {
     config_ = LoadPreset("sb3-nature");
     config_.seed = 7;
     config_.learner.batch = kBatch;

@@ -114,7 +114,7 @@ TEST_P(VectorStandardTest, ARestoredAgentGoesOnBitForBit) {
   EXPECT_TRUE(Differences(one->AllTensors(), other->AllTensors()).empty());
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, VectorStandardTest, testing::Values("sac", "td3", "ddpg"));
+INSTANTIATE_TEST_SUITE_P(Of, VectorStandardTest, testing::Values("sac", "td3", "ddpg", "drqv2"));
 
 }  // namespace
 }  // namespace shoal::learner

@@ -36,8 +36,10 @@ class DeviceEngineTest : public testing::TestWithParam<AgentCase> {
     ExpectNear(device.agent->AllTensors(), cpu.agent->AllTensors(), 1e-12, 1e-12);
     for (uint64_t u = 0; u < GetParam().updates; ++u) {
       const RandomBatch batch = Batch(u);
-      const UpdateOutcome expected = cpu.agent->Update(batch.View());
-      const UpdateOutcome outcome = device.agent->Update(batch.View());
+      BatchView view = batch.View();
+      view.stored_steps = 500 * u;  // schedules change from update to update
+      const UpdateOutcome expected = cpu.agent->Update(view);
+      const UpdateOutcome outcome = device.agent->Update(view);
       ASSERT_TRUE(expected.finite && outcome.finite) << u;
       if (u == 0) ExpectFigures(outcome, expected, first);
     }
@@ -235,6 +237,11 @@ const AgentCase kAgentCases[] = {
        config->learner.algorithm = "ddpg";
        config->learner.mean_penalty = 0.1;
        config->learner.normalise_vectors = true;
+     }},
+    {"drqv2",
+     [](Config* config, ObservationSpec*) {
+       config->learner.algorithm = "drqv2";
+       config->learner.actor_period = 1;
      }},
 };
 

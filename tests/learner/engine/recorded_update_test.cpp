@@ -132,6 +132,13 @@ const Variant kVariants[] = {
        config->learner.algorithm = "ddpg";
        config->sac.aux.clear();
      }},
+    {"drqv2",
+     [](Config* config) {
+       config->learner.algorithm = "drqv2";
+       config->learner.actor_period = 1;
+       config->drqv2.noise = Schedule{.start = 1, .end = 0.1, .env_steps = kLargeSteps};
+       config->sac.aux.clear();
+     }},
 };
 
 // Rates follow a schedule from update to update, and steps are counted: both are in the engine's
