@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/config/shared_data.h"
 
+#include <fmt/ranges.h>
+
 #include <set>
 
+#include "common/base/error.h"
 #include "common/base/program_file.h"
 
 namespace shoal {
@@ -38,6 +41,16 @@ std::optional<fs::path> FindSharedData(const std::string& kind, const std::strin
     if (fs::is_regular_file(path, error)) return path;
   }
   return std::nullopt;
+}
+
+fs::path FindFileOrSharedData(const std::string& kind, const std::string& noun,
+                              const std::string& file_or_name) {
+  const bool is_file =
+      file_or_name.find('/') != std::string::npos || fs::path(file_or_name).extension() == ".json";
+  if (is_file) return file_or_name;
+  if (const auto path = FindSharedData(kind, file_or_name)) return *path;
+  throw UsageError("no {} '{}': expected a file (*.json) or one of: {}", noun, file_or_name,
+                   fmt::join(ListSharedData(kind), ", "));
 }
 
 }  // namespace shoal

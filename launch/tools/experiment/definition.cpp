@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <set>
 
 #include "common/base/bounded_json.h"
@@ -16,6 +15,7 @@
 #include "common/config/shared_data.h"
 #include "common/tasks/task_library.h"
 #include "common/tasks/task_registry.h"
+#include "launch/tools/experiment/json_members.h"
 
 namespace shoal::launch {
 namespace {
@@ -30,93 +30,32 @@ constexpr char kKind[] = "experiments";
 // Keys that the experiment sets: name, folder and final evaluation of its runs.
 constexpr std::array kOwnKeys = {"seed", "run_name", "run_dir", "preset", "eval.final_episodes"};
 
-bool IsFileName(const std::string& text) {
-  const auto allowed = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '_' || c == '-';
-  };
-  return !text.empty() && text[0] != '.' && text[0] != '-' && std::ranges::all_of(text, allowed);
+// The keys of a member, under their present names, so that definitions of different versions can be
+// compared.
+ordered_json ReadKeys(JsonMembers& members, const std::string& name) {
+  const ordered_json* value = members.Find(name);
+  ordered_json keys = ordered_json::object();
+  if (value == nullptr) return keys;
+  if (!value->is_object()) members.Refuse(name, *value, "an object {KEY: VALUE}");
+  for (const auto& [key, setting] : value->items()) {
+    const std::string present(PresentName(key));
+    if (keys.contains(present)) {
+      throw UsageError("{}: {}: key '{}' given twice", members.source(), name, present);
+    }
+    keys[present] = setting;
+  }
+  return keys;
 }
 
-// An integer from 0 to the largest int64. Parsed text has another number type than values made in
-// C++.
-std::optional<int64_t> NaturalNumber(const ordered_json& value) {
-  if (!value.is_number_integer()) return std::nullopt;
-  if (value.is_number_unsigned() &&
-      value.get<uint64_t>() > static_cast<uint64_t>(std::numeric_limits<int64_t>::max())) {
-    return std::nullopt;
-  }
-  const auto number = value.get<int64_t>();
-  return number >= 0 ? std::optional(number) : std::nullopt;
-}
-
-// Reads the members of one JSON object and refuses members that no call has asked for.
-class Members {
- public:
-  Members(const ordered_json& object, std::string source)
-      : object_(object), source_(std::move(source)) {
-    if (!object.is_object()) throw UsageError("{}: expected a JSON object", source_);
-  }
-
-  const ordered_json* Find(const std::string& name) {
-    known_.push_back(name);
-    const auto it = object_.find(name);
-    return it == object_.end() ? nullptr : &*it;
-  }
-  const ordered_json& Need(const std::string& name) {
-    if (const ordered_json* value = Find(name)) return *value;
-    throw UsageError("{}: '{}' is missing", source_, name);
-  }
-  std::string Text(const std::string& name, const std::string& absent) {
-    const ordered_json* value = Find(name);
-    if (value == nullptr) return absent;
-    if (!value->is_string()) Refuse(name, *value, "a string");
-    return value->get<std::string>();
-  }
-  // Returns keys under their present names, so that definitions of different versions can be
-  // compared.
-  ordered_json Keys(const std::string& name) {
-    const ordered_json* value = Find(name);
-    ordered_json keys = ordered_json::object();
-    if (value == nullptr) return keys;
-    if (!value->is_object()) Refuse(name, *value, "an object {KEY: VALUE}");
-    for (const auto& [key, setting] : value->items()) {
-      const std::string present(PresentName(key));
-      if (keys.contains(present)) {
-        throw UsageError("{}: {}: key '{}' given twice", source_, name, present);
-      }
-      keys[present] = setting;
-    }
-    return keys;
-  }
-  [[noreturn]] void Refuse(const std::string& name, const ordered_json& value,
-                           const char* expected) const {
-    throw UsageError("{}: {} = {}: expected {}", source_, name, value.dump(), expected);
-  }
-  // Call it after all known members have been asked for.
-  void RefuseOthers() const {
-    for (const auto& [name, value] : object_.items()) {
-      if (std::ranges::find(known_, name) == known_.end()) {
-        throw UsageError("{}: unknown member '{}', there are: {}", source_, name,
-                         fmt::join(known_, ", "));
-      }
-    }
-  }
-
- private:
-  const ordered_json& object_;
-  const std::string source_;
-  std::vector<std::string> known_;
-};
-
-std::vector<Arm> ReadArms(Members& members, const std::string& source) {
+std::vector<Arm> ReadArms(JsonMembers& members, const std::string& source) {
   const ordered_json& list = members.Need("arms");
   if (!list.is_array() || list.empty()) members.Refuse("arms", list, "a list of at least one arm");
   std::vector<Arm> arms;
   std::set<std::string> names;
   for (const ordered_json& entry : list) {
     const std::string where = fmt::format("{}: arm {}", source, arms.size() + 1);
-    Members arm(entry, where);
-    arms.push_back({.name = arm.Text("name", ""), .set = arm.Keys("set")});
+    JsonMembers arm(entry, where);
+    arms.push_back({.name = arm.Text("name", ""), .set = ReadKeys(arm, "set")});
     arm.RefuseOthers();
     const std::string& name = arms.back().name;
     if (!IsFileName(name)) {
@@ -127,7 +66,7 @@ std::vector<Arm> ReadArms(Members& members, const std::string& source) {
   return arms;
 }
 
-std::vector<int64_t> ReadSeeds(Members& members) {
+std::vector<int64_t> ReadSeeds(JsonMembers& members) {
   const ordered_json& list = members.Need("seeds");
   const char* const expected = "a list of different integers of at least 0";
   if (!list.is_array() || list.empty()) members.Refuse("seeds", list, expected);
@@ -140,7 +79,7 @@ std::vector<int64_t> ReadSeeds(Members& members) {
   return seeds;
 }
 
-std::vector<std::string> ReadTransfer(Members& members) {
+std::vector<std::string> ReadTransfer(JsonMembers& members) {
   const ordered_json* list = members.Find("transfer");
   std::vector<std::string> tasks;
   if (list == nullptr) return tasks;
@@ -183,7 +122,7 @@ void NoteFormerNames(const ordered_json& holder) {
 
 Definition ParseDefinition(const ordered_json& object, const std::string& source,
                            const std::string& stem) {
-  Members members(object, source);
+  JsonMembers members(object, source);
   if (members.Text("schema", "") != kDefinitionSchema) {
     throw UsageError("{}: expected an object of schema '{}'", source, kDefinitionSchema);
   }
@@ -196,7 +135,7 @@ Definition ParseDefinition(const ordered_json& object, const std::string& source
   members.Need("base");
   definition.base = members.Text("base", "");
   definition.question = members.Text("question", "");
-  definition.set = members.Keys("set");
+  definition.set = ReadKeys(members, "set");
   definition.arms = ReadArms(members, source);
   definition.seeds = ReadSeeds(members);
   if (const ordered_json* episodes = members.Find("final_episodes")) {
@@ -245,12 +184,7 @@ ordered_json ToJson(const Definition& definition) {
 std::vector<std::string> ListDefinitions() { return ListSharedData(kKind); }
 
 fs::path FindDefinition(const std::string& file_or_name) {
-  const bool is_file =
-      file_or_name.find('/') != std::string::npos || fs::path(file_or_name).extension() == ".json";
-  if (is_file) return file_or_name;
-  if (const auto path = FindSharedData(kKind, file_or_name)) return *path;
-  throw UsageError("no experiment '{}': expected a file (*.json) or one of: {}", file_or_name,
-                   fmt::join(ListDefinitions(), ", "));
+  return FindFileOrSharedData(kKind, "experiment", file_or_name);
 }
 
 Config ResolveBase(const Definition& definition, const std::string& source,

@@ -11,6 +11,7 @@
 #include "common/base/build_info.h"
 #include "common/base/or_null.h"
 #include "common/config/config_io.h"
+#include "launch/tools/experiment/aligned_table.h"
 #include "launch/tools/experiment/statistics_json.h"
 
 namespace shoal::launch {
@@ -120,23 +121,6 @@ ordered_json GroupJson(const GroupFigures& group) {
 
 std::string FormatCounts(const std::vector<double>& values) {
   return values.empty() ? "-" : fmt::format("{:.0f}", Mean(values));
-}
-
-using Row = std::vector<std::string>;
-
-// Makes each column as wide as its widest cell. The first column is left-aligned.
-std::string Table(const std::vector<Row>& rows) {
-  std::vector<size_t> widths(rows[0].size());
-  for (const Row& row : rows) {
-    for (size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
-  }
-  std::string text;
-  for (const Row& row : rows) {
-    std::string line;
-    for (size_t i = 0; i < row.size(); ++i) line += fmt::format("{:<{}}  ", row[i], widths[i]);
-    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
-  }
-  return text;
 }
 
 std::string Notes(const Comparison& comparison) {
@@ -269,8 +253,8 @@ ordered_json ToJson(const Comparison& comparison) {
 }
 
 std::string ToText(const Comparison& comparison) {
-  std::vector<Row> rows{{"", "SEEDS", "SUCCESS [95 %]", "RETURN [95 %]", "DISTANCE, cm [95 %]",
-                         "ENV STEPS", "UPDATES", "WALL, s", "CORE-HOURS"}};
+  std::vector<TableRow> rows{{"", "SEEDS", "SUCCESS [95 %]", "RETURN [95 %]", "DISTANCE, cm [95 %]",
+                              "ENV STEPS", "UPDATES", "WALL, s", "CORE-HOURS"}};
   bool has_success = false;
   for (const GroupFigures& group : comparison.groups) {
     has_success |= !group.figures.successes.empty();
@@ -280,7 +264,7 @@ std::string ToText(const Comparison& comparison) {
                     FormatCounts(group.wall_seconds), fmt::format("{:.2f}", group.core_hours)});
   }
   std::string text = comparison.task + "; env steps, updates and wall time are means over seeds\n";
-  text += Table(rows);
+  text += AlignedTable(rows);
   if (has_success) {
     text += fmt::format("\nenv steps (wall clock) to {:.0f} % success, by seed:\n",
                         100 * comparison.target_success);
@@ -303,7 +287,7 @@ std::string ToText(const Comparison& comparison) {
       rows.push_back({difference.key});
       std::ranges::copy(difference.values, std::back_inserter(rows.back()));
     }
-    text += fmt::format("\n{}", Table(rows));
+    text += fmt::format("\n{}", AlignedTable(rows));
   }
   if (comparison.baselines) text += fmt::format("\n{}\n", FormatBaselines(*comparison.baselines));
   return text + Notes(comparison);

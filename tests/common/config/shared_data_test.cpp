@@ -6,6 +6,7 @@
 
 #include "common/base/files.h"
 #include "common/config/config_io.h"
+#include "tests/support/error_message.h"
 #include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 
@@ -57,6 +58,18 @@ TEST(SharedData, AProjectsOwnComesFirstInItsFolderAlone) {
   EXPECT_EQ(LoadPreset("mine").seed, 7);
   EXPECT_EQ(LoadPreset("fetch-reach-drq").seed, 8);
   EXPECT_THAT(ListPresets(), Contains("fetch-reach-state"));
+}
+
+TEST(SharedData, AWordIsAPathOrAName) {
+  const auto find = [](const std::string& word) {
+    return FindFileOrSharedData("presets", "preset", word);
+  };
+  EXPECT_EQ(find("fetch-reach-drq"), *FindSharedData("presets", "fetch-reach-drq"));
+  EXPECT_EQ(find("nowhere/x"), "nowhere/x");
+  EXPECT_EQ(find("fetch-reach-drq.json"), "fetch-reach-drq.json") << "in the working folder";
+  EXPECT_THAT(UsageMessage([&] { find("nope"); }),
+              testing::AllOf(testing::StartsWith("no preset 'nope': expected a file (*.json) or "),
+                             testing::HasSubstr("fetch-reach-drq")));
 }
 
 TEST(SharedData, NothingOutsideTheFoldersIsReached) {
