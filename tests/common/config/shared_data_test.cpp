@@ -32,7 +32,7 @@ class WorkingFolder {
 TEST(SharedData, IsFoundFromAnyFolder) {
   const TemporaryFolder folder;
   const WorkingFolder here(folder.path());
-  for (const char* kind : {"presets", "experiments"}) {
+  for (const char* kind : {"presets", "experiments", "references"}) {
     const fs::path source = SourcePath(std::string("launch/data/") + kind);
     std::vector<std::string> names;
     for (const auto& entry : fs::directory_iterator(source)) names.push_back(entry.path().stem());

@@ -20,11 +20,12 @@ TEST_F(NewProject, AnInstallationHasItsPartsWhereTheyBelong) {
   for (const char* file :
        {"bin/shoal", "bin/shoal-actor", "bin/shoal-learner", "bin/shoal-replay",
         "share/shoal/presets/fetch-reach-drq.json", "share/shoal/experiments/reach-three-way.json",
-        "share/shoal/grafana/shoal.json", "share/shoal/config.schema.json",
-        "share/shoal/template/task/goal.cpp", "share/man/man1/shoal.1.gz",
-        "share/man/man5/shoal-configuration.5.gz", "share/bash-completion/completions/shoal-actor",
-        "share/zsh/vendor-completions/_shoal", "share/fish/vendor_completions.d/shoal.fish",
-        "include/shoal/actor/worlds/world.h", "share/doc/shoal/examples/shoal-train@.service"}) {
+        "share/shoal/references/planet-6.json", "share/shoal/grafana/shoal.json",
+        "share/shoal/config.schema.json", "share/shoal/template/task/goal.cpp",
+        "share/man/man1/shoal.1.gz", "share/man/man5/shoal-configuration.5.gz",
+        "share/bash-completion/completions/shoal-actor", "share/zsh/vendor-completions/_shoal",
+        "share/fish/vendor_completions.d/shoal.fish", "include/shoal/actor/worlds/world.h",
+        "share/doc/shoal/examples/shoal-train@.service"}) {
     EXPECT_TRUE(fs::is_regular_file(Prefix() / file)) << file;
   }
 }
@@ -35,7 +36,8 @@ TEST_F(NewProject, AnInstallationFindsItsPresetsFromAnyFolderWithoutTheSources) 
   Expect(result);
   EXPECT_EQ(nlohmann::json::parse(result.out).at("preset"), "fetch-reach-state");
   const std::string program = ReadFile(Shoal());
-  for (const char* folder : {"launch/data/presets", "launch/data/experiments"}) {
+  for (const char* folder :
+       {"launch/data/presets", "launch/data/experiments", "launch/data/references"}) {
     EXPECT_EQ(program.find(SourcePath(folder)), std::string::npos) << folder;
   }
 }
