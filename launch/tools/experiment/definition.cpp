@@ -16,6 +16,7 @@
 #include "common/tasks/task_library.h"
 #include "common/tasks/task_registry.h"
 #include "launch/tools/experiment/json_members.h"
+#include "launch/tools/experiment/reference.h"
 
 namespace shoal::launch {
 namespace {
@@ -91,6 +92,24 @@ std::vector<std::string> ReadTransfer(JsonMembers& members) {
   return tasks;
 }
 
+std::vector<int64_t> ReadFrames(JsonMembers& members) {
+  const ordered_json* list = members.Find("frames");
+  if (list == nullptr) return {};
+  const auto frames = IncreasingNumbers(*list);
+  if (!frames) members.Refuse("frames", *list, "a list of increasing integers of at least 1");
+  return *frames;
+}
+
+std::string ReadReferenceName(JsonMembers& members) {
+  const ordered_json* name = members.Find("reference");
+  if (name == nullptr) return "";
+  // A path would have another meaning in another working folder.
+  if (!name->is_string() || !IsFileName(name->get<std::string>())) {
+    members.Refuse("reference", *name, "the name of a reference (letters, digits, '.', '_', '-')");
+  }
+  return name->get<std::string>();
+}
+
 // Converts {"learner.batch": 8} to {"learner": {"batch": 8}}, the form that ApplyJson takes.
 json Nested(const ordered_json& set, const std::string& source) {
   json nested = json::object();
@@ -152,6 +171,8 @@ Definition ParseDefinition(const ordered_json& object, const std::string& source
     definition.target_success = target->get<double>();
   }
   definition.transfer = ReadTransfer(members);
+  definition.frames = ReadFrames(members);
+  definition.reference = ReadReferenceName(members);
   members.RefuseOthers();
   return definition;
 }
@@ -178,6 +199,8 @@ ordered_json ToJson(const Definition& definition) {
   if (definition.final_episodes) object["final_episodes"] = *definition.final_episodes;
   object["target_success"] = definition.target_success;
   if (!definition.transfer.empty()) object["transfer"] = definition.transfer;
+  if (!definition.frames.empty()) object["frames"] = definition.frames;
+  if (!definition.reference.empty()) object["reference"] = definition.reference;
   return object;
 }
 
@@ -210,6 +233,15 @@ void CheckTransfer(const Definition& definition, const std::string& source) {
     } catch (const Error& e) {
       throw UsageError("{}: transfer: {}", source, e.what());
     }
+  }
+}
+
+void CheckReference(const Definition& definition, const std::string& source) {
+  if (definition.reference.empty()) return;
+  try {
+    ReadReference(FindReference(definition.reference));
+  } catch (const Error& e) {
+    throw UsageError("{}: reference: {}", source, e.what());
   }
 }
 

@@ -3,7 +3,8 @@
 // file (schema shoal-experiment-definition-1):
 //
 //   {"schema", "base": PRESET, "set": {KEY: VALUE}, "arms": [{"name", "set": {KEY: VALUE}}],
-//    "seeds": [...], "final_episodes", "name", "target_success", "question", "transfer": [TASK]}
+//    "seeds": [...], "final_episodes", "name", "target_success", "question", "transfer": [TASK],
+//    "frames": [...], "reference": NAME}
 //
 // Keys are dotted ("learner.batch"), as for --set. docs/experiments.md explains each member.
 #pragma once
@@ -35,6 +36,9 @@ struct Definition {
   std::optional<int> final_episodes{};  // eval.final_episodes of the runs; empty = as in the preset
   double target_success = 0.9;          // n_to_target counts the env steps to this success rate
   std::vector<std::string> transfer{};  // further tasks on which each finished run is evaluated
+  // Environment frames at which the summary shows the mean return; increasing, may be empty.
+  std::vector<int64_t> frames{};
+  std::string reference{};  // name of published results (reference.h); empty = none
 };
 
 // Throws Error (usage) naming the file and the member if a member is unknown, missing or ill-typed,
@@ -66,5 +70,7 @@ Config ArmConfig(const Config& base, const Arm& arm, const std::string& source);
 // Throws Error (usage) naming `source` if `transfer` contains an unknown task. Call it after an
 // arm's configuration has been resolved, because a user's tasks are not known earlier.
 void CheckTransfer(const Definition& definition, const std::string& source);
+// Throws Error (usage) naming `source` if the reference does not exist or is refused (reference.h).
+void CheckReference(const Definition& definition, const std::string& source);
 
 }  // namespace shoal::launch

@@ -245,6 +245,7 @@ ExperimentPlan PlanExperiment(const fs::path& folder, const Definition& definiti
     plan.arms.push_back(ArmConfig(plan.experiment.base, arm, source));
   }
   CheckTransfer(definition, source);
+  CheckReference(definition, source);
   return plan;
 }
 

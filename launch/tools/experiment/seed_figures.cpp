@@ -136,6 +136,15 @@ std::string FormatReturn(const SeedFigures& figures) {
   return FormatMean(figures.returns, MeanInterval95(figures.returns), figures.failed);
 }
 
+std::string FormatValue(double value) {
+  std::string text = fmt::format("{:.{}f}", value, Digits(value, std::nullopt));
+  if (text.find('.') != std::string::npos) {
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+  }
+  return text;
+}
+
 std::string FormatDistance(const SeedFigures& figures) {
   std::vector<double> centimetres;
   for (const double distance : figures.distances) centimetres.push_back(Centimetres(distance));

@@ -46,6 +46,9 @@ std::string FormatSuccess(const SeedFigures& figures);
 // "-0.82 [-0.91, -0.73] (3 seeds)"; "-0.82 (1 seed)"; "(2 seeds; 1 failed, left out)". The number
 // of digits follows from the width of the interval.
 std::string FormatReturn(const SeedFigures& figures);
+// One number with four significant digits, at most two of them after the point, without zeros at
+// the end: "688.3", "42".
+std::string FormatValue(double value);
 // Formats distances like returns, in centimetres.
 std::string FormatDistance(const SeedFigures& figures);
 

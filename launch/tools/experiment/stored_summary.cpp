@@ -13,6 +13,7 @@
 #include "common/base/files.h"
 #include "launch/tools/experiment/arm_table.h"
 #include "launch/tools/experiment/experiment_run_status.h"
+#include "launch/tools/experiment/frames_table.h"
 #include "launch/tools/experiment/statistics_json.h"
 
 namespace shoal::launch {
@@ -80,6 +81,8 @@ void Recompute(ordered_json* summary) {
     }
   }
   (*summary)["ratios"] = ratios;
+  const FramesResults frames = ReadFramesResults(*summary);
+  if (!frames.frames.empty()) SetFramesAggregates(frames, summary);
 }
 
 }  // namespace
@@ -105,7 +108,7 @@ std::string StoredSummaryText(const ordered_json& summary) {
   for (const ordered_json& arm : arms) {
     rows.push_back({NameOf(arm), RowFigures(arm), arm.at("runs").size()});
   }
-  text += ArmTable(rows);
+  text += ArmTable(rows) + FramesText(ReadFramesResults(summary));
   for (size_t i = 1; i < arms.size() && !summary.at("ratios").empty(); ++i) {
     const SampleRatio ratio = RatioToFirst(arms, i);
     const std::string arm = NameOf(arms.at(i)), first = NameOf(arms.at(0));

@@ -8,14 +8,15 @@
 
 namespace shoal::launch {
 
-// Reads the object of a file. The aggregates (success, return, final_distance, ratios) are computed
-// anew from the rows (`runs` of each arm); all other members are unchanged. If the file does not
-// name the rule of n_to_target, an older build wrote the file. n_to_target_rule is then set to the
-// rule of that build: two consecutive evaluations that both reach the target. If the file is not a
-// shoal-experiment-1 object, throws Error naming the file.
+// Reads the object of a file. The aggregates (success, return, final_distance, at_frames,
+// mean_of_tasks, ratios) are computed anew from the rows (`runs` of each arm); all other members
+// are unchanged. If the file does not name the rule of n_to_target, an older build wrote the file.
+// n_to_target_rule is then set to the rule of that build: two consecutive evaluations that both
+// reach the target. If the file is not a shoal-experiment-1 object, throws Error naming the file.
 nlohmann::ordered_json ReadStoredSummary(const std::filesystem::path& file);
 
-// Text for the terminal: the question, a line per arm, the ratios.
+// Text for the terminal: the question, a line per arm, the returns at environment frames, the
+// ratios.
 std::string StoredSummaryText(const nlohmann::ordered_json& summary);
 
 }  // namespace shoal::launch

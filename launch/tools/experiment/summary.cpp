@@ -13,6 +13,7 @@
 #include "common/base/or_null.h"
 #include "launch/record/run_folder.h"
 #include "launch/tools/experiment/arm_table.h"
+#include "launch/tools/experiment/frames_table.h"
 #include "launch/tools/experiment/statistics_json.h"
 
 namespace shoal::launch {
@@ -30,6 +31,9 @@ RunOutcome ReadRun(const StoredExperiment& experiment, const ExperimentRun& run,
   try {
     outcome.results = ReadRunResults(run.folder);
     outcome.n_to_target = StepsToSuccess(*outcome.results, experiment.definition.target_success);
+    if (outcome.report.standing != ExperimentRunStatus::kFailed) {
+      outcome.at_frames = ReturnsAtFrames(*outcome.results, experiment.definition.frames);
+    }
   } catch (const Error& e) {
     outcome.report = {ExperimentRunStatus::kFailed, e.what()};
   }
@@ -43,6 +47,33 @@ void Gather(ArmOutcome& arm) {
     if (standing != ExperimentRunStatus::kFinished || !run.results->final) continue;
     const EvaluationFigures& final = *run.results->final;
     arm.figures.Add(final.success, final.episodes, final.return_mean, final.final_distance_mean);
+  }
+}
+
+FramesArm FramesArmOf(const ArmOutcome& arm, std::string task) {
+  FramesArm frames{.name = arm.name, .task = std::move(task)};
+  for (const RunOutcome& run : arm.runs) {
+    const bool failed = run.report.standing == ExperimentRunStatus::kFailed;
+    frames.runs.push_back({.seed = run.run.seed, .failed = failed, .returns = run.at_frames});
+  }
+  return frames;
+}
+
+void GatherFrames(ExperimentOutcome& outcome) {
+  const StoredExperiment& experiment = outcome.experiment;
+  const Definition& definition = experiment.definition;
+  outcome.frames.frames = definition.frames;
+  if (definition.frames.empty()) return;
+  for (size_t i = 0; i < outcome.arms.size(); ++i) {
+    const Config config = ArmConfig(experiment.base, definition.arms[i], definition.name);
+    outcome.frames.arms.push_back(FramesArmOf(outcome.arms[i], config.task));
+  }
+  if (definition.reference.empty()) return;
+  try {
+    SetReference(ReadReference(FindReference(definition.reference)), &outcome.frames);
+  } catch (const Error& e) {
+    // The results of the runs do not depend on the reference, so they are shown without it.
+    outcome.reference_problem = e.what();
   }
 }
 
@@ -78,7 +109,8 @@ ordered_json TransferJson(const RunResults& results) {
   return list;
 }
 
-ordered_json RunJson(const RunOutcome& outcome, const std::filesystem::path& folder) {
+ordered_json RunJson(const RunOutcome& outcome, const std::filesystem::path& folder,
+                     bool with_frames) {
   ordered_json object{{"run", outcome.run.name},
                       {"seed", outcome.run.seed},
                       {"status", StatusWord(outcome.report.standing)},
@@ -99,18 +131,32 @@ ordered_json RunJson(const RunOutcome& outcome, const std::filesystem::path& fol
   object["cores"] = if_begun(results.cores);
   object["commits"] = results.commits;
   if (!results.transfer.empty()) object["transfer"] = TransferJson(results);
+  if (with_frames) object["at_frames"] = AtFramesJson(outcome.at_frames);
   object["problem"] =
       outcome.report.problem.empty() ? nullptr : ordered_json(outcome.report.problem);
   return object;
 }
 
-ordered_json ArmJson(const ArmOutcome& outcome, const Arm& arm,
-                     const std::filesystem::path& folder) {
+ordered_json ArmJson(const ExperimentOutcome& experiment, size_t i) {
+  const ArmOutcome& outcome = experiment.arms[i];
+  const bool with_frames = !experiment.frames.frames.empty();
   ordered_json runs = ordered_json::array();
-  for (const RunOutcome& run : outcome.runs) runs.push_back(RunJson(run, folder));
-  ordered_json object{{"name", arm.name}, {"overrides", arm.set}, {"runs", runs}};
+  for (const RunOutcome& run : outcome.runs) {
+    runs.push_back(RunJson(run, experiment.experiment.folder, with_frames));
+  }
+  ordered_json object{{"name", outcome.name},
+                      {"overrides", experiment.experiment.definition.arms[i].set},
+                      {"runs", runs}};
   SetAggregates(outcome.figures, &object);
+  if (with_frames) object["task"] = experiment.frames.arms[i].task;
   return object;
+}
+
+void AddFrames(const FramesResults& results, ordered_json* summary) {
+  if (results.frames.empty()) return;
+  (*summary)["frames"] = results.frames;
+  if (!results.reference.empty()) (*summary)["reference"] = ReferenceJson(results);
+  SetFramesAggregates(results, summary);
 }
 
 // Baselines of the first arm's world, and of further tasks and arms with another world.
@@ -187,6 +233,7 @@ ExperimentOutcome ReadOutcome(const StoredExperiment& experiment) {
     const auto found = cache.Find(world.config);
     if (found) outcome.baselines.push_back({std::move(world), *found});
   }
+  GatherFrames(outcome);
   bool has_success = false;
   for (ArmOutcome& arm : outcome.arms) {
     Gather(arm);
@@ -201,26 +248,27 @@ ExperimentOutcome ReadOutcome(const StoredExperiment& experiment) {
 }
 
 ordered_json ToJson(const ExperimentOutcome& outcome) {
-  const StoredExperiment& experiment = outcome.experiment;
-  const Definition& definition = experiment.definition;
+  const Definition& definition = outcome.experiment.definition;
   ordered_json arms = ordered_json::array(), ratios = ordered_json::array();
   for (size_t i = 0; i < outcome.arms.size(); ++i) {
-    arms.push_back(ArmJson(outcome.arms[i], definition.arms[i], experiment.folder));
+    arms.push_back(ArmJson(outcome, i));
   }
   for (const auto& named : outcome.ratios) {
     ratios.push_back(RatioJson(named.arm + "/" + named.first, named.ratio));
   }
-  return {{"schema", kSummarySchema},
-          {"name", definition.name},
-          {"question", definition.question},
-          {"base", definition.base},
-          {"target_success", definition.target_success},
-          {"n_to_target_rule", kReachedTogether},
-          {"commit", BuildCommit()},
-          {"created", UtcTimestamp()},
-          {"arms", arms},
-          {"ratios", ratios},
-          {"baselines", BaselinesJson(outcome)}};
+  ordered_json summary{{"schema", kSummarySchema},
+                       {"name", definition.name},
+                       {"question", definition.question},
+                       {"base", definition.base},
+                       {"target_success", definition.target_success},
+                       {"n_to_target_rule", kReachedTogether},
+                       {"commit", BuildCommit()},
+                       {"created", UtcTimestamp()},
+                       {"arms", arms},
+                       {"ratios", ratios},
+                       {"baselines", BaselinesJson(outcome)}};
+  AddFrames(outcome.frames, &summary);
+  return summary;
 }
 
 void WriteSummary(const ExperimentOutcome& outcome) {
@@ -238,7 +286,10 @@ std::string SummaryText(const ExperimentOutcome& outcome) {
   for (const ArmOutcome& arm : outcome.arms) {
     rows.push_back({arm.name, arm.figures, arm.runs.size()});
   }
-  text += ArmTable(rows);
+  text += ArmTable(rows) + FramesText(outcome.frames);
+  if (!outcome.reference_problem.empty()) {
+    text += fmt::format("the reference is not shown: {}\n", outcome.reference_problem);
+  }
   if (!outcome.ratios.empty()) {
     text += fmt::format("env steps to {:.0f} % success, arm / first arm:\n",
                         100 * definition.target_success);

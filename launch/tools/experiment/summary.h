@@ -11,6 +11,7 @@
 #include "launch/run/baselines.h"
 #include "launch/tools/experiment/experiment_folder.h"
 #include "launch/tools/experiment/experiment_run_status.h"
+#include "launch/tools/experiment/frames_results.h"
 #include "launch/tools/experiment/run_results.h"
 #include "launch/tools/experiment/seed_figures.h"
 #include "launch/tools/experiment/statistics.h"
@@ -21,8 +22,9 @@ struct RunOutcome {
   ExperimentRun run{};
   StandingReport report{};
   LoggedRun logged{};
-  std::optional<RunResults> results{};    // empty: not started, or unreadable
-  std::optional<uint64_t> n_to_target{};  // env steps
+  std::optional<RunResults> results{};      // empty: not started, or unreadable
+  std::optional<uint64_t> n_to_target{};    // env steps
+  std::vector<ReturnAtFrames> at_frames{};  // at the definition's `frames`; empty for a failed run
 };
 
 struct ArmOutcome {
@@ -63,6 +65,8 @@ struct ExperimentOutcome {
     Baselines baselines;
   };
   std::vector<NamedBaselines> baselines{};
+  FramesResults frames{};           // without frames if the definition has none
+  std::string reference_problem{};  // why the definition's reference is not in `frames`
 };
 
 // Reads every run. A broken run counts as failed. Throws Error only if experiment.json or the log

@@ -34,6 +34,7 @@ std::string Refusal(const ordered_json& object) {
     const Config base = ResolveBase(definition, "x.json");
     for (const Arm& arm : definition.arms) ArmConfig(base, arm, "x.json");
     CheckTransfer(definition, "x.json");
+    CheckReference(definition, "x.json");
   });
 }
 
@@ -64,8 +65,12 @@ TEST(Definition, SurvivesItsOwnJson) {
   object["target_success"] = 0.5;
   object["transfer"] = {"FetchReach"};
   object["final_episodes"] = 3;
+  object["frames"] = {100, 500};
+  object["reference"] = "planet-6";
   const Definition definition = ParseDefinition(object, "x.json", "x");
   EXPECT_EQ(ToJson(ParseDefinition(ToJson(definition), "y.json", "y")), ToJson(definition));
+  EXPECT_THAT(definition.frames, ElementsAre(100, 500));
+  EXPECT_EQ(definition.reference, "planet-6");
   EXPECT_EQ(definition.name, "named");
 }
 
@@ -119,6 +124,11 @@ TEST(Definition, MistakesAreRefusedByName) {
       {"/final_episodes", 0, {"final_episodes"}},
       {"/target_success", 1.5, {"target_success"}},
       {"/transfer", {"FetchFly"}, {"transfer", "FetchFly"}},
+      {"/frames", {200, 100}, {"x.json: frames = [200,100]: expected a list of increasing"}},
+      {"/frames", ordered_json::array(), {"x.json: frames = []"}},
+      {"/reference", "a/b.json", {"x.json: reference = \"a/b.json\": expected the name"}},
+      {"/reference", 3, {"x.json: reference = 3"}},
+      {"/reference", "nope", {"x.json: reference: no reference 'nope'", "planet-6"}},
       {"/jobs", 2, {"unknown member 'jobs'"}}};
   for (const Case& mistake : cases) {
     ordered_json object = Valid();
@@ -156,6 +166,7 @@ TEST(Definition, EveryCommittedOneIsGood) {
     EXPECT_EQ(definition.name, name) << "the name by which it is found";
     const Config base = ResolveBase(definition, file);
     for (const Arm& arm : definition.arms) EXPECT_NO_THROW(ArmConfig(base, arm, file));
+    EXPECT_NO_THROW(CheckReference(definition, file));
   }
 }
 

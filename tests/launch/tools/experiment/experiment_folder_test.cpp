@@ -63,6 +63,21 @@ TEST_F(ExperimentFolderTest, FurtherArmsAndSeedsAreTaken) {
   EXPECT_EQ(ReadExperiment(path_).definition.arms.size(), 3u);
 }
 
+// These members change the summary only, not the runs.
+TEST_F(ExperimentFolderTest, OtherFramesAndReferencesAreTaken) {
+  Definition definition = TwoArms();
+  definition.frames = {100};
+  { const ExperimentFolder first(Plan(definition)); }
+  definition.frames = {100, 500};
+  definition.reference = "planet-6";
+  EXPECT_EQ(Refusal(definition), "");
+  EXPECT_EQ(ReadExperiment(path_).definition.frames, definition.frames);
+  EXPECT_EQ(ReadExperiment(path_).definition.reference, "planet-6");
+  definition.reference = "nope";
+  EXPECT_THAT(Refusal(definition), HasSubstr("x.json: reference: no reference 'nope'"));
+  EXPECT_EQ(ReadExperiment(path_).definition.reference, "planet-6");
+}
+
 TEST_F(ExperimentFolderTest, AnotherExperimentIsRefusedAndNothingChanges) {
   { const ExperimentFolder first(Plan(TwoArms())); }
   const std::string before = ReadFile(path_ / "experiment.json");

@@ -14,6 +14,15 @@ SeedFigures Three() {
   return figures;
 }
 
+TEST(FormatValue, HasFourDigits) {
+  EXPECT_EQ(FormatValue(688.333), "688.3");
+  EXPECT_EQ(FormatValue(1234.4), "1234");
+  EXPECT_EQ(FormatValue(-1.659), "-1.66");
+  EXPECT_EQ(FormatValue(759), "759");
+  EXPECT_EQ(FormatValue(700.04), "700");
+  EXPECT_EQ(FormatValue(0), "0");
+}
+
 TEST(SeedFigures, OneSeedHasWilsonsIntervalOfItsEpisodes) {
   SeedFigures figures;
   figures.Add(292.0 / 300, 300, -1, 0.02);

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "launch/tools/experiment/frames_table.h"
+#include "launch/tools/experiment/stored_summary.h"
 #include "tests/launch/tools/experiment/planted_run.h"
 
 namespace shoal::launch {
@@ -153,6 +155,100 @@ TEST_F(SummaryTest, ARunThatFailedBeforeItHadAFolderIsThere) {
   EXPECT_EQ(run.at("run"), "pixels-s9");
   EXPECT_EQ(run.at("status"), "failed");
   EXPECT_EQ(run.at("problem"), "refused");
+}
+
+TEST_F(SummaryTest, WithoutFramesItSaysNothingAboutThem) {
+  const auto json = Json();
+  for (const char* name : {"frames", "mean_of_tasks", "reference"})
+    EXPECT_FALSE(json.contains(name));
+  EXPECT_FALSE(json.at("arms").at(0).contains("task"));
+  EXPECT_FALSE(json.at("arms").at(0).contains("at_frames"));
+  EXPECT_FALSE(json.at("arms").at(0).at("runs").at(0).contains("at_frames"));
+  EXPECT_THAT(SummaryText(ReadOutcome(folder_->experiment())),
+              testing::Not(HasSubstr("environment frames")));
+}
+
+// One seed on two tasks with the repeats 8 and 2; the second seed has failed on the second task.
+class FramesSummaryTest : public testing::Test {
+ protected:
+  FramesSummaryTest() {
+    Definition definition{.name = "mine", .base = "cartpole-swingup-state"};
+    definition.arms = {{"cartpole", nlohmann::ordered_json::object()},
+                       {"walker", {{"task", "walker_walk"}}}};
+    definition.seeds = {0, 1};
+    definition.frames = {100'000, 500'000};
+    definition.reference = "planet-6";
+    folder_.emplace(PlanExperiment(temporary_.path() / "mine", definition, "x.json"));
+    for (const ExperimentRun& run : folder_->experiment().Runs({0, 1})) {
+      const bool walker = run.arm == 1;
+      const RunPlanter planter(run.folder);
+      planter.Begin({walker ? "task=walker_walk" : "task=cartpole_swingup"});
+      planter.WriteEvaluation(12'504, 0, walker ? 1 : 700);
+      planter.WriteEvaluation(50'002, 0, walker ? 500 : 900);
+      planter.WriteMeta(run.name == "walker-s1" ? "failed" : "interrupted");
+    }
+  }
+
+  const TemporaryFolder temporary_;
+  std::optional<ExperimentFolder> folder_;
+};
+
+TEST_F(FramesSummaryTest, TakesEvaluationsByTheRepeatOfTheirTask) {
+  const auto json = ToJson(ReadOutcome(folder_->experiment()));
+  EXPECT_EQ(json.at("frames"), (std::vector<int>{100'000, 500'000}));
+  const auto& walker = json.at("arms").at(1);
+  EXPECT_EQ(walker.at("task"), "walker_walk");
+  EXPECT_EQ(walker.at("runs").at(0).at("at_frames"),
+            nlohmann::ordered_json::parse(
+                R"([{"frames": 100000, "env_steps": 50002, "episodes": 50, "return_mean": 500}])"))
+      << "of a run that is not finished, too";
+  EXPECT_TRUE(walker.at("runs").at(1).at("at_frames").empty()) << "it has failed";
+  EXPECT_EQ(walker.at("at_frames").at(0).at("return").at("failed"), 1);
+  const auto& cartpole = json.at("arms").at(0).at("at_frames").at(0);
+  EXPECT_EQ(cartpole.at("frames"), 100'000);
+  EXPECT_EQ(cartpole.at("return").at("mean"), 700.0);
+  EXPECT_EQ(cartpole.at("return").at("seeds"), 2);
+  const auto& mean = json.at("mean_of_tasks").at("at_frames").at(0);
+  EXPECT_EQ(mean.at("return").at("mean"), 600.0) << "of seed 0, which both arms have";
+  EXPECT_EQ(json.at("reference").at("name"), "planet-6");
+}
+
+TEST_F(FramesSummaryTest, TheTextHasTheTableAndThePublishedReturns) {
+  const std::string text = SummaryText(ReadOutcome(folder_->experiment()));
+  EXPECT_THAT(text, HasSubstr("mean of 2 tasks  600.0 (1 seed; 1 failed, left out)"));
+  EXPECT_THAT(text, HasSubstr("reference planet-6 at 100000 environment frames:\n"
+                              "TASK              DrQ    DrQ K=M=1"));
+}
+
+// The summary of finished runs must not depend on a file of another project.
+TEST_F(FramesSummaryTest, AMissingReferenceIsOneLine) {
+  ExperimentOutcome outcome = ReadOutcome(folder_->experiment());
+  EXPECT_EQ(outcome.reference_problem, "");
+  StoredExperiment other = folder_->experiment();
+  other.definition.reference = "gone";
+  outcome = ReadOutcome(other);
+  EXPECT_THAT(SummaryText(outcome),
+              HasSubstr("the reference is not shown: no reference 'gone': expected"));
+  EXPECT_FALSE(ToJson(outcome).contains("reference"));
+  EXPECT_EQ(ToJson(outcome).at("mean_of_tasks").at("tasks"), 2);
+}
+
+TEST_F(FramesSummaryTest, AStoredSummaryHasTheSameTables) {
+  WriteSummary(ReadOutcome(folder_->experiment()));
+  const auto file = folder_->experiment().folder / "summary.json";
+  const auto written = nlohmann::ordered_json::parse(ReadFile(file));
+  const auto read = ReadStoredSummary(file);
+  EXPECT_EQ(read, written);
+  const std::string tables = FramesText(ReadOutcome(folder_->experiment()).frames);
+  EXPECT_THAT(tables, HasSubstr("mean of 2 tasks"));
+  EXPECT_THAT(StoredSummaryText(read), HasSubstr(tables));
+  auto changed = written;
+  changed.at("arms").at(0).at("runs").at(0).at("at_frames").at(0).at("return_mean") = 900;
+  WriteFileAtomically(file, changed.dump());
+  EXPECT_EQ(
+      ReadStoredSummary(file).at("mean_of_tasks").at("at_frames").at(0).at("return").at("mean"),
+      700.0)
+      << "computed from the rows";
 }
 
 TEST_F(SummaryTest, EveryWorldHasItsBaselines) {
