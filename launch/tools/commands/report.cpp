@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "launch/tools/report/report.h"
 
-#include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
 #include <memory>
 
@@ -37,6 +38,7 @@ struct PlotOptions {
   std::vector<std::string> figures;  // empty = all figures of the runs
   std::vector<std::string> outputs;
   std::string title;
+  std::vector<std::string> references;
 };
 
 void AddSubjects(CLI::App* command, SubjectOptions* subjects) {
@@ -44,6 +46,25 @@ void AddSubjects(CLI::App* command, SubjectOptions* subjects) {
       ->required();
   command->add_option("--run-dir", subjects->run_dir, "Folder that holds the runs")
       ->capture_default_str();
+}
+
+void AddReferences(CLI::App* command, std::vector<std::string>* references) {
+  command
+      ->add_option("--reference", *references,
+                   "Published results to draw: a file (*.json), or the name of one that Shoal "
+                   "provides; may be repeated")
+      ->allow_extra_args(false);
+}
+
+std::vector<Reference> ReadReferences(const std::vector<std::string>& words) {
+  std::vector<Reference> references;
+  for (const std::string& word : words) {
+    if (std::ranges::count(words, word) > 1) {
+      throw UsageError("--reference: '{}' is given twice", word);
+    }
+    references.push_back(ReadReference(FindReference(word)));
+  }
+  return references;
 }
 
 int CompareSubjects(const CompareOptions& options) {
@@ -55,26 +76,26 @@ int CompareSubjects(const CompareOptions& options) {
   return 0;
 }
 
-// Title of the picture: the subjects by name.
+// Title of the picture: the subjects by name, and their tasks.
 std::string TitleOf(const PlotOptions& options, const Subjects& subjects) {
   if (!options.title.empty()) return options.title;
   std::string title;
   for (const Subject& subject : subjects.named) {
     title += (title.empty() ? "" : ", ") + subject.name;
   }
-  for (const RunGroup& group : subjects.groups) {
-    if (!group.runs.empty()) return title + ": " + group.runs[0].config.task;
-  }
-  return title;
+  return fmt::format("{}: {}", title, fmt::join(TasksOf(subjects.groups), ", "));
 }
 
 int DrawPlot(const PlotOptions& options) {
   InstallStopSignals();
+  const std::vector<Reference> references = ReadReferences(options.references);
   Subjects subjects = ReadSubjects(options.subjects);
   if (subjects.named.size() > 1) CheckOneTask(subjects.groups);
   ReadRollouts(&subjects.groups);
-  Plot plot{
-      .title = TitleOf(options, subjects), .axis = ParsePlotAxis(options.axis), .figures = {}};
+  Plot plot{.title = TitleOf(options, subjects),
+            .axis = ParsePlotAxis(options.axis),
+            .figures = {},
+            .references = references};
   for (const std::string& word : options.figures) plot.figures.push_back(ParsePlotFigure(word));
   if (plot.figures.empty()) plot.figures = FiguresThereAre(subjects.groups);
   const std::vector<std::string> outputs =
@@ -89,12 +110,14 @@ int DrawPlot(const PlotOptions& options) {
 struct ReportOptions {
   SubjectOptions subjects;
   std::string output = "report.html";
+  std::vector<std::string> references;
 };
 
 int WriteReport(const ReportOptions& options) {
   InstallStopSignals();
   CheckWritable(options.output);
-  WriteFileForOthers(options.output, ReportHtml(GatherReport(options.subjects)));
+  WriteFileForOthers(options.output, ReportHtml(GatherReport(options.subjects,
+                                                             ReadReferences(options.references))));
   std::cout << options.output << "\n";
   return 0;
 }
@@ -133,6 +156,7 @@ void AddReportCommand(CLI::App& app, Action* chosen) {
   const auto options = std::make_shared<ReportOptions>();
   AddSubjects(command, &options->subjects);
   command->add_option("--output", options->output, "File to write")->capture_default_str();
+  AddReferences(command, &options->references);
   command->callback([=] { *chosen = [=] { return WriteReport(*options); }; });
 }
 
@@ -158,7 +182,8 @@ void AddPlotCommand(CLI::App& app, Action* chosen) {
       "Draw learning curves, with bands from the smallest to the largest seed. Needs gnuplot.");
   const auto options = std::make_shared<PlotOptions>();
   AddSubjects(command, &options->subjects);
-  command->add_option("--x", options->axis, "env-steps | updates | wall")->capture_default_str();
+  command->add_option("--x", options->axis, "env-steps | frames | updates | wall")
+      ->capture_default_str();
   command
       ->add_option("--y", options->figures,
                    "success | return | distance; may be repeated; default: all that the runs have")
@@ -169,6 +194,7 @@ void AddPlotCommand(CLI::App& app, Action* chosen) {
           fmt::format("File to write, .png or .svg; may be repeated; {} by default", kDefaultPlot))
       ->allow_extra_args(false);
   command->add_option("--title", options->title, "Title above the curves");
+  AddReferences(command, &options->references);
   command->callback([=] { *chosen = [=] { return DrawPlot(*options); }; });
 }
 

@@ -8,6 +8,7 @@
 #include "common/config/key_description.h"
 #include "common/tasks/task_registry.h"
 #include "launch/tools/experiment/definition.h"
+#include "launch/tools/experiment/reference.h"
 
 namespace shoal::launch {
 namespace {
@@ -56,6 +57,7 @@ std::vector<Word> KnownValues(const std::string& name, const std::string& type,
   if (name == "--set" || name == "assignment") return Assignments();
   if (name == "--task" || name == "task") return Named(tasks::TaskNames());
   if (name == "experiment") return Named(ListDefinitions());
+  if (name == "--reference") return Named(ListReferences());
   return Choices(type, meaning);
 }
 

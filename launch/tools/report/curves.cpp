@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "launch/tools/experiment/environment_frames.h"
 #include "launch/tools/experiment/statistics_json.h"
 
 namespace shoal::launch {
@@ -14,11 +15,23 @@ struct Sample {
   double x, y;
 };
 
+// An axis of one run.
+struct RunAxis {
+  PlotAxis axis;
+  int action_repeat = 1;  // only for the axis of frames
+};
+
+RunAxis AxisOf(PlotAxis axis, const RunResults& run) {
+  return {axis, axis == PlotAxis::kFrames ? ActionRepeatOf(run.config) : 1};
+}
+
 // Position of an evaluation or a RolloutPoint on the axis.
-double Along(PlotAxis axis, const auto& point) {
-  switch (axis) {
+double Along(const RunAxis& axis, const auto& point) {
+  switch (axis.axis) {
     case PlotAxis::kEnvSteps:
       return static_cast<double>(point.env_steps);
+    case PlotAxis::kFrames:
+      return static_cast<double>(point.env_steps) * axis.action_repeat;
     case PlotAxis::kUpdates:
       return static_cast<double>(point.updates);
     case PlotAxis::kWallMinutes:
@@ -56,7 +69,7 @@ std::optional<double> Value(PlotFigure figure, const RolloutPoint& point) {
   return std::nullopt;
 }
 
-std::vector<Sample> SamplesOf(const auto& points, PlotAxis axis, PlotFigure figure) {
+std::vector<Sample> SamplesOf(const auto& points, const RunAxis& axis, PlotFigure figure) {
   std::vector<Sample> samples;
   for (const auto& point : points) {
     const auto value = Value(figure, point);
@@ -108,14 +121,18 @@ std::vector<CurvePoint> OverSeeds(const std::vector<std::vector<Sample>>& seeds,
 std::vector<CurvePoint> CurveOf(const RunGroup& group, PlotAxis axis, PlotFigure figure,
                                 size_t points) {
   std::vector<std::vector<Sample>> seeds;
-  for (const RunResults& run : group.runs) seeds.push_back(SamplesOf(run.curve, axis, figure));
+  for (const RunResults& run : group.runs) {
+    seeds.push_back(SamplesOf(run.curve, AxisOf(axis, run), figure));
+  }
   return OverSeeds(seeds, points);
 }
 
 std::vector<CurvePoint> RolloutCurveOf(const RunGroup& group, PlotAxis axis, PlotFigure figure,
                                        size_t points) {
   std::vector<std::vector<Sample>> seeds;
-  for (const RunResults& run : group.runs) seeds.push_back(SamplesOf(run.rollouts, axis, figure));
+  for (const RunResults& run : group.runs) {
+    seeds.push_back(SamplesOf(run.rollouts, AxisOf(axis, run), figure));
+  }
   return OverSeeds(seeds, points);
 }
 

@@ -9,7 +9,12 @@
 
 namespace shoal::launch {
 
-enum class PlotAxis { kEnvSteps, kUpdates, kWallMinutes };
+enum class PlotAxis {
+  kEnvSteps,
+  kFrames,  // environment frames: env steps x action repeat (environment_frames.h)
+  kUpdates,
+  kWallMinutes,
+};
 enum class PlotFigure { kSuccess, kReturn, kFinalDistance };
 
 struct CurvePoint {
@@ -20,7 +25,8 @@ struct CurvePoint {
 
 // Curve of one group's evaluations during training, over `axis`. Each seed's curve is linear
 // between its evaluations and ends with the last evaluation. The group's curve has a point at each
-// evaluation of any seed, reduced to at most `points`. Empty if no run has values of `figure`.
+// evaluation of any seed, reduced to at most `points`. Empty if no run has values of `figure`. On
+// the axis of frames, throws Error if ActionRepeatOf does.
 std::vector<CurvePoint> CurveOf(const RunGroup& group, PlotAxis axis, PlotFigure figure,
                                 size_t points = 200);
 

@@ -12,6 +12,7 @@
 #include "common/base/stop.h"
 #include "launch/processes/child_process.h"
 #include "launch/processes/scratch_folder.h"
+#include "launch/tools/report/reference_curves.h"
 
 namespace shoal::launch {
 namespace {
@@ -25,11 +26,14 @@ constexpr int kWidth = 900, kPanelHeight = 330;
 // Methods 8:441).
 constexpr std::array kColours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
                                  "#E69F00", "#56B4E9", "#000000"};
+constexpr char kGrey[] = "#666666";
 
 const char* AxisLabel(PlotAxis axis) {
   switch (axis) {
     case PlotAxis::kEnvSteps:
       return "env steps";
+    case PlotAxis::kFrames:
+      return "environment frames (env steps x action repeat)";
     case PlotAxis::kUpdates:
       return "updates";
     case PlotAxis::kWallMinutes:
@@ -77,6 +81,31 @@ std::string DataBlock(const std::string& name, const std::vector<CurvePoint>& cu
   return block + "EOD\n";
 }
 
+std::string ReferenceBlockName(size_t curve) { return fmt::format("$reference_{}", curve); }
+
+std::string ReferenceBlock(const std::string& name, const ReferenceCurve& curve) {
+  std::string block = name + " << EOD\n";
+  for (const ReferencePoint& p : curve.points) {
+    block += fmt::format("{:.10g} {:.10g}\n", p.x, p.value);
+  }
+  return block + "EOD\n";
+}
+
+// One plot element for each published curve. Each method has its own marker, because the lines of
+// several methods may have the same colour.
+std::vector<std::string> ReferenceElements(const std::vector<ReferenceCurve>& curves) {
+  constexpr std::array kShapes = {4, 6, 8, 10, 12, 2};
+  std::vector<std::string> elements;
+  for (size_t i = 0; i < curves.size(); ++i) {
+    const auto& group = curves[i].group;
+    elements.push_back(
+        fmt::format("{} using 1:2 with linespoints dt 2 lw 1 pt {} ps 0.8 lc rgb '{}' title {}",
+                    ReferenceBlockName(i), kShapes[curves[i].method % kShapes.size()],
+                    group ? kColours[*group % kColours.size()] : kGrey, Quoted(curves[i].title)));
+  }
+  return elements;
+}
+
 std::string SeedsOf(const RunGroup& group) {
   return fmt::format("{} ({} seed{})", group.name, group.runs.size(),
                      group.runs.size() == 1 ? "" : "s");
@@ -88,8 +117,10 @@ struct Drawn {
 };
 
 // Draws bands first and the actors' thin lines next, so that they hide no curve of evaluations.
+// `last`: further elements, drawn after the curves.
 std::string PanelCommands(const std::vector<RunGroup>& groups, size_t figure,
-                          const std::vector<Drawn>& drawn, bool legend) {
+                          const std::vector<Drawn>& drawn, bool legend,
+                          const std::vector<std::string>& last) {
   std::vector<std::string> parts;
   for (size_t g = 0; g < groups.size(); ++g) {
     if (!drawn[g].evaluations || groups[g].runs.size() < 2) continue;
@@ -110,8 +141,10 @@ std::string PanelCommands(const std::vector<RunGroup>& groups, size_t figure,
                                 legend ? "title " + Quoted(SeedsOf(groups[g])) : "notitle"));
   }
   if (legend && std::ranges::any_of(drawn, &Drawn::rollouts)) {
-    parts.push_back("NaN with lines lw 1 lc rgb '#666666' title 'thin: episodes of the actors'");
+    parts.push_back(
+        fmt::format("NaN with lines lw 1 lc rgb '{}' title 'thin: episodes of the actors'", kGrey));
   }
+  parts.insert(parts.end(), last.begin(), last.end());
   std::string commands = "plot ";
   for (size_t i = 0; i < parts.size(); ++i) commands += (i == 0 ? "" : ", \\\n  ") + parts[i];
   return commands + "\n";
@@ -121,9 +154,10 @@ std::string PanelCommands(const std::vector<RunGroup>& groups, size_t figure,
 
 PlotAxis ParsePlotAxis(const std::string& word) {
   if (word == "env-steps") return PlotAxis::kEnvSteps;
+  if (word == "frames") return PlotAxis::kFrames;
   if (word == "updates") return PlotAxis::kUpdates;
   if (word == "wall") return PlotAxis::kWallMinutes;
-  throw UsageError("axis '{}': expected env-steps | updates | wall", word);
+  throw UsageError("axis '{}': expected env-steps | frames | updates | wall", word);
 }
 
 PlotFigure ParsePlotFigure(const std::string& word) {
@@ -165,6 +199,11 @@ std::string PlotScript(const Plot& plot, const std::vector<RunGroup>& groups,
       throw UsageError("no run has evaluations with {} to draw", FigureLabel(plot.figures[f]));
     }
   }
+  const std::vector<ReferenceCurve> published =
+      ReferenceCurvesOf(plot.references, groups, plot.axis);
+  for (size_t i = 0; i < published.size(); ++i) {
+    script += ReferenceBlock(ReferenceBlockName(i), published[i]);
+  }
   script += fmt::format(
       "set border 3 lc rgb '#666666'\nset tics nomirror out textcolor rgb '#333333'\n"
       "set grid lc rgb '#dddddd' lt 1\nset xrange [0:*]\nset autoscale xfixmax\nset format x "
@@ -183,7 +222,9 @@ std::string PlotScript(const Plot& plot, const std::vector<RunGroup>& groups,
                           : plot.figures[f] == PlotFigure::kFinalDistance ? "0:*"
                                                                           : "*:*",
                           last ? Quoted(AxisLabel(plot.axis)) : "''");
-    script += PanelCommands(groups, f, drawn[f], f == 0);
+    const bool returns = plot.figures[f] == PlotFigure::kReturn;
+    script += PanelCommands(groups, f, drawn[f], f == 0,
+                            returns ? ReferenceElements(published) : std::vector<std::string>());
   }
   return script + "unset multiplot\n";
 }

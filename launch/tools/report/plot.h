@@ -6,19 +6,22 @@
 #include <string>
 #include <vector>
 
+#include "launch/tools/experiment/reference.h"
 #include "launch/tools/report/curves.h"
 #include "launch/tools/report/subjects.h"
 
 namespace shoal::launch {
 
 // Both functions throw Error (usage) if the word is unknown; the message lists the possible words.
-PlotAxis ParsePlotAxis(const std::string& word);      // env-steps | updates | wall
+PlotAxis ParsePlotAxis(const std::string& word);      // env-steps | frames | updates | wall
 PlotFigure ParsePlotFigure(const std::string& word);  // success | return | distance
 
 struct Plot {
   std::string title{};
   PlotAxis axis = PlotAxis::kEnvSteps;
   std::vector<PlotFigure> figures{};  // drawn from top to bottom
+  // Published results, drawn as dashed lines among the returns (reference_curves.h).
+  std::vector<Reference> references{};
 };
 
 // Script for gnuplot that contains the data. The extension of `output` selects png or svg. Throws

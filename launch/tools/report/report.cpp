@@ -12,11 +12,12 @@
 #include "common/base/files.h"
 #include "common/config/config_io.h"
 #include "common/run_folder/run_file_names.h"
-#include "launch/processes/scratch_folder.h"
 #include "launch/record/run_folder.h"
+#include "launch/tools/experiment/frames_table.h"
 #include "launch/tools/experiment/statistics_json.h"
+#include "launch/tools/experiment/summary.h"
 #include "launch/tools/report/command_line.h"
-#include "launch/tools/report/plot.h"
+#include "launch/tools/report/report_curves.h"
 
 namespace shoal::launch {
 namespace {
@@ -42,7 +43,7 @@ pre { background: #f5f5f5; padding: .8rem; overflow-x: auto; }
 video { width: 32rem; max-width: 100%; }
 )";
 
-using Row = std::vector<std::string>;
+using Row = TableRow;
 
 std::string RowHtml(const Row& row, const char* cell) {
   std::string html = "<tr>";
@@ -125,6 +126,49 @@ std::string ResultsHtml(const Comparison& comparison) {
   return html;
 }
 
+std::string TableHtmlWithHead(std::vector<Row> rows) {
+  const Row head = rows[0];
+  rows.erase(rows.begin());
+  return TableHtml(head, rows);
+}
+
+// Mean returns at environment frames, and the published ones.
+std::string FramesHtml(const std::vector<FramesResults>& experiments) {
+  std::string html;
+  for (const FramesResults& results : experiments) {
+    html += TableHtmlWithHead(FramesRows(results));
+    html +=
+        "<p class=\"note\">Mean return over seeds with Student's interval, of the evaluations "
+        "during training that are nearest to these numbers of environment frames (env steps x "
+        "action repeat) and within 2 % of them.</p>\n";
+    for (const int64_t frames : PublishedFrames(results)) {
+      html += fmt::format("<p>Reference {} at {} environment frames</p>\n",
+                          EscapeMarkup(results.reference), frames);
+      html += TableHtmlWithHead(PublishedRows(results, frames));
+    }
+  }
+  return html;
+}
+
+// Sources of the references, and of their methods that have a source of their own.
+std::string SourcesHtml(const ReportContent& content) {
+  std::vector<std::string> lines = content.problems;
+  for (const Reference& reference : content.references) {
+    lines.push_back(
+        fmt::format("Dashed lines: reference {}. {}", reference.name, reference.source));
+    for (const ReferenceResult& result : reference.results) {
+      if (result.source.empty()) continue;
+      const std::string line = fmt::format("{}: {}", result.method, result.source);
+      if (std::ranges::count(lines, line) == 0) lines.push_back(line);
+    }
+  }
+  std::string html;
+  for (const std::string& line : lines) {
+    html += fmt::format("<p class=\"note\">{}</p>\n", EscapeMarkup(line));
+  }
+  return html;
+}
+
 // Results of policies on tasks other than their own.
 std::string TransferHtml(const std::vector<RunGroup>& groups) {
   std::vector<Row> rows;
@@ -175,6 +219,10 @@ std::string DefinitionsHtml(const std::vector<Definition>& definitions) {
     if (!definition.transfer.empty()) {
       rows.push_back({"also tested on", fmt::format("{}", fmt::join(definition.transfer, ", "))});
     }
+    if (!definition.frames.empty()) {
+      rows.push_back({"returns at frames", fmt::format("{}", fmt::join(definition.frames, ", "))});
+    }
+    if (!definition.reference.empty()) rows.push_back({"reference", definition.reference});
     html += TableHtml({"experiment", definition.name}, rows);
   }
   return html;
@@ -261,25 +309,27 @@ std::string SvgElement(const std::string& document) {
   return start == std::string::npos ? "" : document.substr(start);
 }
 
-// Draws curves over env steps, to compare algorithms, and over wall time, to compare waiting times.
-std::vector<std::string> DrawCurves(const std::string& title, const std::vector<RunGroup>& groups) {
-  std::vector<std::string> curves;
-  const std::vector<PlotFigure> figures = FiguresThereAre(groups);
-  if (figures.empty()) return curves;
-  const ScratchFolder scratch;
-  const fs::path file = scratch.path() / "curves.svg";
-  for (const PlotAxis axis : {PlotAxis::kEnvSteps, PlotAxis::kWallMinutes}) {
-    Draw({.title = title, .axis = axis, .figures = figures}, groups, file);
-    curves.push_back(ReadFile(file));
+// Reads the experiment's returns at environment frames, and its reference.
+void GatherFrames(const StoredExperiment& experiment, ReportContent* content) {
+  if (!experiment.definition.frames.empty()) {
+    content->frames.push_back(ReadOutcome(experiment).frames);
   }
-  return curves;
+  const std::string& name = experiment.definition.reference;
+  if (name.empty() || std::ranges::count(content->references, name, &Reference::name) > 0) {
+    return;
+  }
+  try {
+    content->references.push_back(ReadReference(FindReference(name)));
+  } catch (const Error& e) {
+    content->problems.push_back(fmt::format("The reference is not shown: {}.", e.what()));
+  }
 }
 
 }  // namespace
 
-ReportContent GatherReport(const SubjectOptions& options) {
+ReportContent GatherReport(const SubjectOptions& options, std::vector<Reference> references) {
   const Subjects subjects = ReadSubjects(options);
-  ReportContent content{.groups = subjects.groups};
+  ReportContent content{.groups = subjects.groups, .references = std::move(references)};
   double target = kUsualTarget;
   const bool single = subjects.named.size() == 1;
   if (!single) CheckOneTask(content.groups);
@@ -288,6 +338,7 @@ ReportContent GatherReport(const SubjectOptions& options) {
     if (!subject.experiment) continue;
     const Definition& definition = subject.experiment->definition;
     content.definitions.push_back(definition);
+    GatherFrames(*subject.experiment, &content);
     content.commands.push_back(CommandLine({"shoal", "experiment", "run", definition.name}) +
                                "    # or the definition's file");
     if (single) {
@@ -304,7 +355,8 @@ ReportContent GatherReport(const SubjectOptions& options) {
   }
   content.comparison = Gather(content.groups, target);
   ReadRollouts(&content.groups);
-  content.curves = DrawCurves(content.comparison.task, content.groups);
+  content.curves = DrawReportCurves(
+      content.groups, {.over_frames = !content.frames.empty(), .references = content.references});
   return content;
 }
 
@@ -314,13 +366,15 @@ std::string ReportHtml(const ReportContent& content) {
       "content=\"width=device-width, initial-scale=1\">\n<title>{0}</title><style>{1}</style>"
       "</head><body>\n<h1>{0}</h1>\n<p class=\"note\">{2} &middot; written {3} by shoal {4} ({5})"
       "</p>\n",
-      EscapeMarkup(content.title), kStyle, EscapeMarkup(content.comparison.task), UtcTimestamp(),
+      EscapeMarkup(content.title), kStyle,
+      EscapeMarkup(fmt::format("{}", fmt::join(TasksOf(content.groups), ", "))), UtcTimestamp(),
       BuildVersion(), BuildCommit());
   if (!content.question.empty()) {
     html += fmt::format("<p class=\"question\">{}</p>\n", EscapeMarkup(content.question));
   }
   html += Section("Definition", DefinitionsHtml(content.definitions));
   html += Section("Results", ResultsHtml(content.comparison));
+  html += Section("Returns at environment frames", FramesHtml(content.frames));
   html += Section("On other tasks", TransferHtml(content.groups));
   if (!content.curves.empty()) {
     std::string drawings;
@@ -329,7 +383,8 @@ std::string ReportHtml(const ReportContent& content) {
                     drawings +
                         "<p class=\"note\">Mean over seeds; the band reaches from the smallest to "
                         "the largest seed. Thin lines: the actors' latest episodes, which "
-                        "explore.</p>\n");
+                        "explore.</p>\n" +
+                        SourcesHtml(content));
   }
   html += Section("Films", FilmsHtml(content.groups));
   html += Section("Runs", RunsHtml(content.groups));

@@ -87,6 +87,16 @@ Subjects ReadSubjects(const SubjectOptions& options) {
   return subjects;
 }
 
+std::vector<std::string> TasksOf(const std::vector<RunGroup>& groups) {
+  std::vector<std::string> tasks;
+  for (const RunGroup& group : groups) {
+    for (const RunResults& run : group.runs) {
+      if (std::ranges::count(tasks, run.config.task) == 0) tasks.push_back(run.config.task);
+    }
+  }
+  return tasks;
+}
+
 void CheckOneTask(const std::vector<RunGroup>& groups) {
   const RunResults* first = nullptr;
   for (const RunGroup& group : groups) {

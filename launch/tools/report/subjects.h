@@ -44,6 +44,9 @@ struct Subjects {
 // experiment, occurs twice or has no evaluation.
 Subjects ReadSubjects(const SubjectOptions& options);
 
+// Tasks of the runs, each once, in the order of the groups.
+std::vector<std::string> TasksOf(const std::vector<RunGroup>& groups);
+
 // Throws Error (usage) naming two runs of different tasks, whose results cannot be compared.
 void CheckOneTask(const std::vector<RunGroup>& groups);
 

@@ -172,6 +172,7 @@ TEST_P(Completion, OffersPresetsTasksAndChoices) {
                               {"shoal", "env", "describe", "FetchPu"},
                               {"shoal", "env", "render", "--quality", "r"},
                               {"shoal", "experiment", "run", "reach-th"},
+                              {"shoal", "plot", "--reference", "p"},
                               {"shoal-actor", "--role", "e"}});
   Set fetch;
   std::ranges::copy_if(presets, std::inserter(fetch, fetch.end()),
@@ -182,7 +183,8 @@ TEST_P(Completion, OffersPresetsTasksAndChoices) {
   EXPECT_THAT(offers[3], IsSupersetOf({"FetchPush", "FetchPushDense"}));
   EXPECT_THAT(offers[4], ElementsAre("reference"));
   EXPECT_THAT(offers[5], ElementsAre("reach-three-way"));
-  EXPECT_THAT(offers[6], ElementsAre("eval"));
+  EXPECT_THAT(offers[6], ElementsAre("planet-6"));
+  EXPECT_THAT(offers[7], ElementsAre("eval"));
 }
 
 TEST_P(Completion, OffersKeysAndTheirChoices) {

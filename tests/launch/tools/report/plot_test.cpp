@@ -55,6 +55,24 @@ TEST(CurveOf, GoesAlongTheAxisAskedFor) {
   EXPECT_TRUE(CurveOf(TwoSeeds(), PlotAxis::kEnvSteps, PlotFigure::kSuccess).empty());
 }
 
+TEST(CurveOf, CountsTheFramesOfEachRun) {
+  RunGroup group = TwoSeeds();
+  group.runs[0].config.task = "cartpole_swingup";  // 8 control steps
+  group.runs[1].config.action_repeat = 3;
+  const auto curve = CurveOf(group, PlotAxis::kFrames, PlotFigure::kReturn);
+  ASSERT_EQ(curve.size(), 4u);
+  EXPECT_EQ(curve[0].x, 300);
+  EXPECT_EQ(curve[1].x, 800);
+  EXPECT_EQ(curve[3].x, 1600);
+}
+
+TEST(ParsePlotAxis, HasAWordForEach) {
+  EXPECT_EQ(ParsePlotAxis("env-steps"), PlotAxis::kEnvSteps);
+  EXPECT_EQ(ParsePlotAxis("frames"), PlotAxis::kFrames);
+  EXPECT_EQ(ParsePlotAxis("updates"), PlotAxis::kUpdates);
+  EXPECT_EQ(ParsePlotAxis("wall"), PlotAxis::kWallMinutes);
+}
+
 TEST(CurveOf, ThinsButKeepsTheEnd) {
   std::vector<std::pair<uint64_t, double>> many;
   for (uint64_t i = 1; i <= 1000; ++i) many.emplace_back(i, 1.0);
@@ -77,6 +95,7 @@ TEST(RolloutCurveOf, IsThatOfTheActorsEpisodes) {
   EXPECT_EQ(curve[0].x, 1);
   EXPECT_EQ(curve[0].mean, 25);
   EXPECT_EQ(curve[1].mean, 75);
+  EXPECT_EQ(RolloutCurveOf(group, PlotAxis::kFrames, PlotFigure::kSuccess)[0].x, 10);
   EXPECT_TRUE(RolloutCurveOf(group, PlotAxis::kEnvSteps, PlotFigure::kReturn).empty())
       << "files of older builds have no return";
   EXPECT_TRUE(RolloutCurveOf(TwoSeeds(), PlotAxis::kEnvSteps, PlotFigure::kSuccess).empty());

@@ -89,6 +89,80 @@ TEST(Report, ShowsTheDefinitionOfAnExperiment) {
   }
 }
 
+// An experiment with two tasks.
+class ReportOfTasks : public testing::Test {
+ protected:
+  std::string Page(const Definition& changes, const std::vector<Reference>& references = {}) const {
+    Definition definition{.name = "mine", .base = "cartpole-swingup-state"};
+    definition.arms = {{"cartpole", nlohmann::ordered_json::object()},
+                       {"walker", {{"task", "walker_walk"}}}};
+    definition.seeds = {0};
+    definition.frames = changes.frames;
+    definition.reference = changes.reference;
+    const ExperimentFolder open(PlanExperiment(folder_.path() / "mine", definition, "x.json"));
+    for (const ExperimentRun& run : open.experiment().Runs()) {
+      const RunPlanter planter(run.folder);
+      planter.Begin({run.arm == 1 ? "task=walker_walk" : "task=cartpole_swingup"});
+      planter.WriteEvaluation(6'000, 0.5, 300);
+      planter.WriteEvaluation(run.arm == 1 ? 50'000 : 12'500, 0.5, 700);
+      planter.WriteMeta("interrupted");
+    }
+    return ReportHtml(GatherReport(
+        {.names = {"mine"}, .run_dir = "nowhere", .experiment_dir = folder_.path()}, references));
+  }
+  static int Count(const std::string& html, const std::string& part) {
+    int count = 0;
+    for (size_t at = html.find(part); at != std::string::npos; at = html.find(part, at + 1)) {
+      ++count;
+    }
+    return count;
+  }
+
+  const TemporaryFolder folder_;
+};
+
+TEST_F(ReportOfTasks, HasAChartForEachTask) {
+  const std::string html = Page({});
+  EXPECT_EQ(Count(html, "<svg"), 4) << "two tasks, two axes";
+  EXPECT_EQ(Count(html, ">cartpole_swingup</"), 2);
+  EXPECT_EQ(Count(html, ">walker_walk</"), 2);
+  EXPECT_EQ(Count(html, ">env steps</tspan>"), 2);
+  EXPECT_THAT(html, HasSubstr(">cartpole_swingup, walker_walk &middot; written"));
+  EXPECT_THAT(html, Not(HasSubstr("environment frames")));
+}
+
+TEST_F(ReportOfTasks, WithFramesHasTheirAxisTheirTableAndTheReference) {
+  Definition changes;
+  changes.frames = {100'000};
+  changes.reference = "planet-6";
+  const std::string html = Page(changes);
+  EXPECT_EQ(Count(html, ">environment frames (env steps x action repeat)<"), 2);
+  EXPECT_THAT(html, Not(HasSubstr(">env steps</tspan>")));
+  for (const char* part : {"<h2>Returns at environment frames</h2>", "<th>100000 [95 %]</th>",
+                           "<td>mean of 2 tasks</td><td>700.0 (1 seed)</td>", "<th>DrQ K=M=1</th>",
+                           "<td>759</td>", "Dashed lines: reference planet-6.", "arXiv:2004.13649",
+                           ">SAC pixels: Laskin", "<td>returns at frames</td><td>100000</td>"}) {
+    EXPECT_THAT(html, HasSubstr(part));
+  }
+  EXPECT_EQ(Count(html, ">DrQ</text>"), 2) << "in both charts over frames";
+}
+
+TEST_F(ReportOfTasks, DrawsReferencesOfTheCommand) {
+  const Reference own{
+      .name = "own",
+      .source = "s",
+      .results = {{.method = "Theirs", .task = "walker_walk", .frames = {100}, .returns = {5}}}};
+  EXPECT_THAT(Page({}), Not(HasSubstr("Theirs")));
+  EXPECT_THAT(Page({}, {own}), AllOf(HasSubstr(">Theirs<"), HasSubstr(">Dashed lines: reference "
+                                                                      "own. s</p>")));
+}
+
+TEST(Report, SaysWhyAReferenceIsMissing) {
+  ReportContent content{.title = "t", .curves = {"<svg></svg>"}};
+  content.problems = {"The reference is not shown: <x>."};
+  EXPECT_THAT(ReportHtml(content), HasSubstr("The reference is not shown: &lt;x&gt;."));
+}
+
 TEST(Report, WhatComesFromOutsideIsEscaped) {
   ReportContent content{.title = "<b>", .question = "a & \"b\""};
   content.comparison.groups.push_back({.name = "<script>x</script>"});
