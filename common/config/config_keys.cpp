@@ -243,6 +243,13 @@ std::vector<Key> SacKeys() {
       SHOAL_KEY(sac.target_entropy_per_action, (RealRange{-100, 100}),
                 "target entropy per action dimension, in nats, unless sac.target_entropy is "
                 "set; 0 aims at 0 nats"),
+      SHOAL_KEY(sac.critics, (IntegerRange{2, 16}), "number of critics, each with a target"),
+      SHOAL_KEY(sac.target_critics, (IntegerRange{0, 16}),
+                "number of target critics, drawn at random for each update, whose minimum is the "
+                "target; at most sac.critics; 0 = all"),
+      SHOAL_KEY(sac.actor_value, (Choices{{"min", "mean"}}),
+                "value of an action in the actor's loss: min = the smallest value of the critics; "
+                "mean = their mean"),
       SHOAL_KEY(sac.critic_blocks, (AnyValue{}),
                 "recorded blocks that the critic gets instead of pixels, in addition to the "
                 "vectors that the policy observes: true = all, false = none (the critic gets the "

@@ -171,6 +171,14 @@ void ValidateEncoders(const Config& config) {
   }
 }
 
+// Checks the ensemble of critics. Algorithms without section sac have defaults here.
+void ValidateCritics(const SacConfig& sac) {
+  if (sac.target_critics > sac.critics) {
+    throw UsageError("sac.target_critics = {}: expected at most sac.critics = {}, or 0 for all",
+                     sac.target_critics, sac.critics);
+  }
+}
+
 // Checks privileged inputs. PrivilegedBlocksOf checks whether the task records them.
 void ValidatePrivileged(const Config& config) {
   if (!config.sac.aux.empty() && !config.observation.pixels) {
@@ -253,6 +261,7 @@ void Validate(const Config& config) {
   }
   if (!LearnsOnPolicy(config)) {
     ValidateEncoders(config);
+    ValidateCritics(config.sac);
     ValidatePrivileged(config);
     ValidateReplay(config);
   }

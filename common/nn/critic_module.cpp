@@ -65,4 +65,11 @@ CriticModule::CriticModule(const HeadPlan& plan, const Features* features, bool 
     : Module(plan.Parameters(), use, context),
       network_(MakeCriticNetwork(plan, features, trains_encoder, &parameters_, use, context)) {}
 
+std::vector<Array> CriticModule::values() const {
+  std::vector<Array> values;
+  values.reserve(size_t(count()));
+  for (int i = 0; i < count(); ++i) values.push_back(q(i));
+  return values;
+}
+
 }  // namespace shoal::nn

@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "common/nn/actor_critic_plan.h"
 #include "common/nn/array.h"
@@ -25,6 +26,8 @@ class CriticModule final : public Module {
   int count() const { return network_->count(); }
   // Result (B) of the latest ForwardAction; (B, outputs) if the plan has several outputs.
   Array q(int i) const { return network_->q(i); }
+  // Results of all Q functions.
+  std::vector<Array> values() const;
 
   // The trunk's outputs, for a readout; null without pixels.
   const Features* trunk_features() const { return network_->trunk_features(); }

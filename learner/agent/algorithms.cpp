@@ -23,7 +23,12 @@ namespace shoal::learner {
 namespace {
 
 constexpr Algorithm kAlgorithms[] = {
-    {.name = "sac", .figures = kSacFigures, .critics = 2, .sb3 = "SAC", .make = MakeSacAgent},
+    {.name = "sac",
+     .figures = kSacFigures,
+     .critics = 2,
+     .critics_of = [](const Config& config) { return config.sac.critics; },
+     .sb3 = "SAC",
+     .make = MakeSacAgent},
     {.name = "td3", .figures = kTwinFigures, .critics = 2, .sb3 = "TD3", .make = MakeTd3Agent},
     {.name = "ddpg",
      .figures = kSingleCriticFigures,
@@ -61,6 +66,11 @@ const Algorithm& FindAlgorithm(std::string_view name) {
   std::vector<std::string_view> names;
   for (const Algorithm& known : kAlgorithms) names.push_back(known.name);
   throw UsageError("learner.algorithm = \"{}\": expected {}", name, fmt::join(names, " | "));
+}
+
+int CriticsOf(const Config& config) {
+  const Algorithm& algorithm = FindAlgorithm(config.learner.algorithm);
+  return algorithm.critics_of != nullptr ? algorithm.critics_of(config) : algorithm.critics;
 }
 
 int ReplicasOf(const Config& config, const ObservationSpec& spec, int threads) {

@@ -23,6 +23,8 @@ struct Algorithm {
   // Metrics that the algorithm's updates may report, in this order.
   std::span<const Figure* const> figures;
   int critics = 0;  // trained Q functions, each with a target; 0 on policy
+  // Returns the number of trained Q functions if keys set this number; null: `critics`.
+  int (*critics_of)(const Config& config) = nullptr;
   // Class of Stable-Baselines3 with the same policy network; empty if there is no such class.
   std::string_view sb3 = "";
   // Makes an agent that computes with `engine`, which it borrows. Initialises the networks from
@@ -39,6 +41,9 @@ struct Algorithm {
 std::span<const Algorithm> Algorithms();
 // If there is no algorithm of this name, throws Error (kUsage) that lists the existing algorithms.
 const Algorithm& FindAlgorithm(std::string_view name);
+
+// Number of the trained Q functions of config.learner.algorithm.
+int CriticsOf(const Config& config);
 
 // Returns the number of replicas (common/nn/replica.h) for `threads` threads. Usually there is one
 // replica for each thread. There is a single replica, whose passes use all threads, if the

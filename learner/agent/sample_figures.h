@@ -55,13 +55,13 @@ inline constexpr Figure kQ2Mean{"q2_mean", "", "mean of the second Q function, i
                                 false, "replay/q2_mean"};
 inline constexpr Figure kQ2Std{"q2_std", "", "standard deviation of the second Q function", false,
                                "replay/q2_std"};
-inline constexpr Figure kQMinMean{"q_min_mean", "", "mean of the smaller Q", false,
+inline constexpr Figure kQMinMean{"q_min_mean", "", "mean of the smallest Q", false,
                                   "replay/q_min_mean"};
-inline constexpr Figure kQMinStd{"q_min_std", "", "standard deviation of the smaller Q", false,
+inline constexpr Figure kQMinStd{"q_min_std", "", "standard deviation of the smallest Q", false,
                                  "replay/q_min_std"};
-inline constexpr Figure kQMinMin{"q_min_min", "", "smallest value of the smaller Q", false,
+inline constexpr Figure kQMinMin{"q_min_min", "", "smallest value of the smallest Q", false,
                                  "replay/q_min_min"};
-inline constexpr Figure kQMinMax{"q_min_max", "", "largest value of the smaller Q", false,
+inline constexpr Figure kQMinMax{"q_min_max", "", "largest value of the smallest Q", false,
                                  "replay/q_min_max"};
 
 }  // namespace shoal::learner

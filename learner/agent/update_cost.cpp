@@ -68,7 +68,7 @@ int64_t ParameterCount(const nn::NetworkPlan& plan) {
 
 // Multiply-adds of an update.
 double OffPolicy(const Config& config, const ObservationSpec& spec, const EncoderPasses& encoder) {
-  const int critic_count = FindAlgorithm(config.learner.algorithm).critics;
+  const int critic_count = CriticsOf(config);
   const nn::ActorPlan actor = nn::PlanActor(
       config.network, spec,
       LearnsDeviation(config) ? nn::ActorOutput::kGaussian : nn::ActorOutput::kDeterministic);

@@ -5,6 +5,7 @@
 #include "common/base/check.h"
 #include "common/nn/device_memory.h"
 #include "learner/device/device_engine.h"
+#include "learner/engine/draw_subset.h"
 
 namespace shoal::learner::device {
 namespace {
@@ -186,6 +187,12 @@ void DeviceEngine::Targets(const TargetTerms& terms, Array y) {
                            .reward = AddressOf(terms.reward),
                            .bootstrap = AddressOf(terms.bootstrap)};
   SetAddresses(terms.next_q, targets.next_q);
+  if (terms.drawn > 0) {
+    // The draw travels with the inputs, because commands contain no number that changes.
+    const auto drawn = DrawSubset(int(terms.next_q.size()), terms.drawn, terms.random);
+    targets.critics = terms.drawn;
+    targets.chosen = landing().Add(std::span<const int32_t>(drawn));
+  }
   targets.next_log_prob = AddressOf(terms.next_log_prob);
   targets.temperature = AddressOf(terms.temperature);
   targets.reward_scale = terms.reward_scale;
@@ -217,17 +224,19 @@ void DeviceEngine::CriticLoss(std::span<const Array> q, Array y, std::span<const
   workspace_.Add(loss);
 }
 
-void DeviceEngine::EntropyActorLoss(Array log_prob, std::span<const Array> q, Number temperature,
-                                    std::span<const Array> q_gradients, Number loss) {
-  CHECK(q.size() == 2 && q_gradients.size() == 2) << q.size();
-  workspace_.Add(kernels::EntropyActorLoss{.rows = rows(),
-                                           .log_prob = AddressOf(log_prob),
-                                           .q0 = AddressOf(q[0]),
-                                           .q1 = AddressOf(q[1]),
-                                           .temperature = AddressOf(temperature),
-                                           .q0_gradient = AddressOf(q_gradients[0]),
-                                           .q1_gradient = AddressOf(q_gradients[1]),
-                                           .loss = AddressOf(loss)});
+void DeviceEngine::EntropyActorLoss(Array log_prob, std::span<const Array> q, ActorValue value,
+                                    Number temperature, std::span<const Array> q_gradients,
+                                    Number loss) {
+  CHECK(q.size() == q_gradients.size()) << q.size();
+  kernels::EntropyActorLoss actor_loss{.rows = rows(),
+                                       .critics = int(q.size()),
+                                       .of_mean = value == ActorValue::kMean,
+                                       .log_prob = AddressOf(log_prob)};
+  SetAddresses(q, actor_loss.q);
+  actor_loss.temperature = AddressOf(temperature);
+  SetAddresses(q_gradients, actor_loss.q_gradient);
+  actor_loss.loss = AddressOf(loss);
+  workspace_.Add(actor_loss);
 }
 
 void DeviceEngine::DeterministicActorLoss(std::span<const Array> q, Array mean, Array action,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/base/check.h"
 #include "common/nn/host_memory.h"
@@ -10,6 +11,7 @@
 #include "learner/engine/batch_faults.h"
 #include "learner/engine/batch_part.h"
 #include "learner/engine/clipped_policy_loss.h"
+#include "learner/engine/draw_subset.h"
 #include "learner/engine/moments.h"
 
 namespace shoal::learner {
@@ -22,6 +24,12 @@ double& Cell(Number number) { return HostValues(number).front(); }
 
 // Null if the array is absent.
 float* Data(Array array) { return HostValues(array).data(); }
+
+std::vector<float*> ResultsOf(std::span<const Array> arrays) {
+  std::vector<float*> data;
+  for (const Array array : arrays) data.push_back(Data(array));
+  return data;
+}
 
 std::vector<const float*> DataOf(std::span<const Array> arrays) {
   std::vector<const float*> data;
@@ -193,7 +201,14 @@ void CpuEngine::Targets(const TargetTerms& terms, Array y) {
                     .temperature = 0,
                     .bounds = terms.bounds};
   if (terms.next_log_prob) rates.temperature = float(Cell(terms.temperature));
-  const std::vector<const float*> q = DataOf(terms.next_q);
+  std::vector<const float*> q = DataOf(terms.next_q);
+  if (terms.drawn > 0) {
+    std::vector<const float*> drawn;
+    for (const int32_t i : DrawSubset(int(q.size()), terms.drawn, terms.random)) {
+      drawn.push_back(q[size_t(i)]);
+    }
+    q = std::move(drawn);
+  }
   TdTargets(modules_.batch,
             {Data(terms.reward), Data(terms.bootstrap), q, Data(terms.next_log_prob)}, rates,
             Data(y));
@@ -242,24 +257,22 @@ void CpuEngine::FinishCriticLoss(const std::vector<std::vector<float>>& whole) {
   Cell(to.q_min_max) = least.most;
 }
 
-void CpuEngine::EntropyActorLoss(Array log_prob, std::span<const Array> q, Number temperature,
-                                 std::span<const Array> q_gradients, Number loss) {
-  CHECK(q.size() == 2 && q_gradients.size() == 2) << q.size();
-  const float* q0 = Data(q[0]);
-  const float* q1 = Data(q[1]);
-  AddMean(ActorLossForward(modules_.batch, Data(log_prob), q0, q1, float(Cell(temperature))), loss,
-          /*rounds=*/true);
-  ActorLossBackward(modules_.batch, q0, q1, Data(q_gradients[0]), Data(q_gradients[1]));
+void CpuEngine::EntropyActorLoss(Array log_prob, std::span<const Array> q, ActorValue value,
+                                 Number temperature, std::span<const Array> q_gradients,
+                                 Number loss) {
+  CHECK(q.size() == q_gradients.size()) << q.size();
+  const std::vector<const float*> values = DataOf(q);
+  AddMean(ActorLossForward(modules_.batch, Data(log_prob), values, value, float(Cell(temperature))),
+          loss, /*rounds=*/true);
+  ActorLossBackward(modules_.batch, values, value, ResultsOf(q_gradients));
 }
 
 void CpuEngine::DeterministicActorLoss(std::span<const Array> q, Array mean, Array action,
                                        double mean_penalty, std::span<const Array> q_gradients,
                                        Number loss, Number saturation) {
   CHECK(!q.empty() && q.size() == q_gradients.size()) << q.size();
-  std::vector<float*> gradients;
-  for (const Array gradient : q_gradients) gradients.push_back(Data(gradient));
   AddMean(learner::DeterministicActorLoss(modules_.batch, DataOf(q), HostValues(mean), mean_penalty,
-                                          gradients),
+                                          ResultsOf(q_gradients)),
           loss, /*rounds=*/true);
   AddMean(SaturatedShare(HostValues(action)), saturation, /*rounds=*/false);
 }

@@ -65,8 +65,9 @@ class CpuEngine final : public Engine {
   void AverageCopies(int copies, int shifts, Array y) override;
   void CriticLoss(std::span<const Array> q, Array y, std::span<const Array> q_gradients,
                   const CriticNumbers& figures) override;
-  void EntropyActorLoss(Array log_prob, std::span<const Array> q, Number temperature,
-                        std::span<const Array> q_gradients, Number loss) override;
+  void EntropyActorLoss(Array log_prob, std::span<const Array> q, ActorValue value,
+                        Number temperature, std::span<const Array> q_gradients,
+                        Number loss) override;
   void DeterministicActorLoss(std::span<const Array> q, Array mean, Array action,
                               double mean_penalty, std::span<const Array> q_gradients, Number loss,
                               Number saturation) override;

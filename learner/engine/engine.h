@@ -147,6 +147,8 @@ class Engine {
 
   // Eq. 5, 18 and 20:
   //   y = reward_scale r + bootstrap discount (clip(min_i q'_i, bounds) - temperature log pi')
+  // Eq. 30: if terms.drawn > 0, i runs over as many critics, which DrawSubset (draw_subset.h) draws
+  // once for the whole batch.
   virtual void Targets(const TargetTerms& terms, Array y) = 0;
   // Eq. 15: replaces each group of `copies` consecutive targets by the mean of its first `shifts`
   // targets; 0 = of all.
@@ -155,10 +157,11 @@ class Engine {
   // next Gather.
   virtual void CriticLoss(std::span<const Array> q, Array y, std::span<const Array> q_gradients,
                           const CriticNumbers& figures) = 0;
-  // Eq. 7: L = mean_b (temperature log pi - min(q_0, q_1)). Computes dL/dq_i (b); L is available
-  // after the next Gather.
-  virtual void EntropyActorLoss(Array log_prob, std::span<const Array> q, Number temperature,
-                                std::span<const Array> q_gradients, Number loss) = 0;
+  // Eq. 7 and 30: L = mean_b (temperature log pi - v), v = min_i q_i or mean_i q_i. Computes
+  // dL/dq_i (b); L is available after the next Gather.
+  virtual void EntropyActorLoss(Array log_prob, std::span<const Array> q, ActorValue value,
+                                Number temperature, std::span<const Array> q_gradients,
+                                Number loss) = 0;
   // Eq. 19 and 32: L = -mean_b min_i q_i + mean_penalty mean_ba m^2, where m (b, A) are the
   // policy's outputs before tanh. Computes dL/dq_i (b); L and the share of |action| > 0.99 are
   // available after the next Gather.

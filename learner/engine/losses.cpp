@@ -6,12 +6,34 @@
 #include <numeric>
 
 namespace shoal::learner {
+namespace {
+
+float SmallestAt(std::span<const float* const> q, int b) {
+  float smallest = q[0][b];
+  for (const float* values : q.subspan(1)) smallest = std::min(smallest, values[b]);
+  return smallest;
+}
+
+// The first one on a tie.
+size_t IndexOfSmallest(std::span<const float* const> q, int b) {
+  size_t smallest = 0;
+  for (size_t i = 1; i < q.size(); ++i) {
+    if (!(q[smallest][b] <= q[i][b])) smallest = i;
+  }
+  return smallest;
+}
+
+double MeanAt(std::span<const float* const> q, int b) {
+  double sum = 0;
+  for (const float* values : q) sum += values[b];
+  return sum / double(q.size());
+}
+
+}  // namespace
 
 void TdTargets(int batch, const TargetInputs& inputs, const TargetRates& rates, float* y) {
   for (int b = 0; b < batch; ++b) {
-    float smallest = inputs.next_q[0][b];
-    for (const float* q : inputs.next_q.subspan(1)) smallest = std::min(smallest, q[b]);
-    float value = std::clamp(smallest, rates.bounds.low, rates.bounds.high);
+    float value = std::clamp(SmallestAt(inputs.next_q, b), rates.bounds.low, rates.bounds.high);
     if (inputs.next_log_prob != nullptr) value -= rates.temperature * inputs.next_log_prob[b];
     y[b] = rates.reward_scale * inputs.reward[b] + inputs.bootstrap[b] * rates.discount * value;
   }
@@ -55,21 +77,23 @@ void CriticLossBackward(int batch, const float* q, const float* y, float* q_grad
   for (int b = 0; b < batch; ++b) q_gradient[b] = 2 * (q[b] - y[b]) / float(batch);
 }
 
-float ActorLossForward(int batch, const float* log_prob, const float* q0, const float* q1,
-                       float temperature) {
+float ActorLossForward(int batch, const float* log_prob, std::span<const float* const> q,
+                       ActorValue value, float temperature) {
   double loss = 0;
   for (int b = 0; b < batch; ++b) {
-    loss += double(temperature) * log_prob[b] - std::min(q0[b], q1[b]);
+    const double of_action = value == ActorValue::kMin ? SmallestAt(q, b) : MeanAt(q, b);
+    loss += double(temperature) * log_prob[b] - of_action;
   }
   return float(loss / batch);
 }
 
-void ActorLossBackward(int batch, const float* q0, const float* q1, float* q0_gradient,
-                       float* q1_gradient) {
+void ActorLossBackward(int batch, std::span<const float* const> q, ActorValue value,
+                       std::span<float* const> q_gradients) {
+  const bool of_all = value == ActorValue::kMean;
+  const float share = of_all ? -1.f / (float(q.size()) * float(batch)) : -1.f / float(batch);
   for (int b = 0; b < batch; ++b) {
-    const bool first = q0[b] <= q1[b];
-    q0_gradient[b] = first ? -1.f / float(batch) : 0.f;
-    q1_gradient[b] = first ? 0.f : -1.f / float(batch);
+    const size_t smallest = IndexOfSmallest(q, b);
+    for (size_t i = 0; i < q.size(); ++i) q_gradients[i][b] = of_all || i == smallest ? share : 0.f;
   }
 }
 
@@ -78,10 +102,7 @@ float DeterministicActorLoss(int batch, std::span<const float* const> q,
                              std::span<float* const> q_gradients) {
   double sum = 0;
   for (int b = 0; b < batch; ++b) {
-    size_t smallest = 0;
-    for (size_t i = 1; i < q.size(); ++i) {
-      if (q[i][b] < q[smallest][b]) smallest = i;
-    }
+    const size_t smallest = IndexOfSmallest(q, b);
     for (float* const gradient : q_gradients) gradient[b] = 0;
     q_gradients[smallest][b] = -1.f / float(batch);
     sum += q[smallest][b];

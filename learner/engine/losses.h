@@ -51,13 +51,18 @@ struct Summary {
 };
 Summary Summarise(std::span<const float> values);
 
-// Eq. 7:  L = mean_b (temperature log pi - min_i q_i)
-//   dL/dlogpi = temperature / B;   dL/dq_i = -1 / B for the smaller of the two (q_0 on a tie), else
-//   0
-float ActorLossForward(int batch, const float* log_prob, const float* q0, const float* q1,
-                       float temperature);
-void ActorLossBackward(int batch, const float* q0, const float* q1, float* q0_gradient,
-                       float* q1_gradient);
+// The value of an action in the actor's loss: the smallest of the Q functions (Eq. 7), or their
+// mean (Eq. 30).
+enum class ActorValue { kMin, kMean };
+
+// Eq. 7 and 30:  L = mean_b (temperature log pi - v),  v = min_i q_i or mean_i q_i
+//   dL/dlogpi = temperature / B
+//   kMin:  dL/dq_i = -1 / B for the smallest q_i (the first one on a tie), else 0
+//   kMean: dL/dq_i = -1 / (N B) for N Q functions
+float ActorLossForward(int batch, const float* log_prob, std::span<const float* const> q,
+                       ActorValue value, float temperature);
+void ActorLossBackward(int batch, std::span<const float* const> q, ActorValue value,
+                       std::span<float* const> q_gradients);
 
 // Eq. 19 and 32:  L = -mean_b min_i q_i + mean_penalty mean_ba m^2;   dL/dq_i = -1 / B for the
 // smallest (the first one on a tie), else 0. mean: m (B, A), the policy's outputs before tanh.

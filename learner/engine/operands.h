@@ -5,6 +5,7 @@
 
 #include <span>
 
+#include "common/base/random.h"
 #include "common/nn/array.h"
 #include "learner/engine/losses.h"
 
@@ -34,6 +35,8 @@ struct SquashedSample {
 struct TargetTerms {
   Array reward, bootstrap;        // bootstrap: discount^(n-1) (1 - terminated)
   std::span<const Array> next_q;  // one or more target critics at (o', a')
+  int drawn = 0;                  // critics of next_q that count, drawn from `random`; 0 = all
+  Random* random = nullptr;       // read if critics are drawn
   Array next_log_prob;            // log pi(a' | o'); empty: no entropy term
   Number temperature;             // weight of the entropy term
   float reward_scale = 1, discount = 1;

@@ -93,14 +93,6 @@ class DeterministicAgent final : public Agent {
   PendingUpdates pending_{engine_, &figures_, &updates_};
 };
 
-// Values of all Q functions.
-std::vector<Array> ValuesOf(const nn::CriticModule& critic) {
-  std::vector<Array> q;
-  q.reserve(size_t(critic.count()));
-  for (int i = 0; i < critic.count(); ++i) q.push_back(critic.q(i));
-  return q;
-}
-
 DeterministicAgent::DeterministicAgent(const Config& config, const ObservationSpec& spec,
                                        const DeterministicOptions& options, Engine* engine)
     : config_(config),
@@ -183,7 +175,7 @@ void DeterministicAgent::ComputeTargets(const Transitions& batch, Random* random
   target_critic_.ForwardAction(action);
   engine_->Targets({.reward = batch.reward,
                     .bootstrap = batch.bootstrap,
-                    .next_q = ValuesOf(target_critic_),
+                    .next_q = target_critic_.values(),
                     .next_log_prob = {},
                     .temperature = {},
                     .reward_scale = float(config_.learner.reward_scale),
@@ -198,7 +190,7 @@ void DeterministicAgent::UpdateCritic(const Transitions& batch, const OnStageEnd
   critic_.ForwardObservation(batch.obs_vector);
   critic_.ForwardAction(batch.action);
   on_stage_end(UpdateStage::kForward);
-  engine_->CriticLoss(ValuesOf(critic_), targets_, q_gradients_, critic_numbers_);
+  engine_->CriticLoss(critic_.values(), targets_, q_gradients_, critic_numbers_);
   critic_.Backward(q_gradients_);
   if (encoder_) encoder_->Backward();
   engine_->Gather(&critic_optimiser_, critic_squares_);
@@ -217,7 +209,7 @@ void DeterministicAgent::UpdateActor(const Transitions& batch, Random* random,
   critic_.ForwardObservation(batch.obs_vector);
   critic_.ForwardAction(options_.noisy_actor_loss ? WithNoise(action, random) : action);
   on_stage_end(UpdateStage::kForward);
-  const std::vector<Array> q = ValuesOf(critic_);
+  const std::vector<Array> q = critic_.values();
   const auto judges = size_t(options_.actor_critics);
   engine_->DeterministicActorLoss(
       std::span(q).first(judges), mean, action, config_.learner.mean_penalty,

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // One update, in order (equations of docs/algorithm.md):
 //
-//   1. targets     next_obs -> encoders -> actor, target heads -> y                (Eq. 5, 15)
+//   1. targets     next_obs -> encoders -> actor, target heads -> y            (Eq. 5, 15, 30)
 //   2. critic      obs -> encoder -> critic heads -> loss -> encoder and critic step   (Eq. 6)
-//   3. actor       the features of 2, detached -> actor -> critic heads -> actor step  (Eq. 7)
+//   3. actor       the features of 2, detached -> actor -> critic heads -> actor step
+//                                                                                  (Eq. 7, 30)
 //   4. temperature from the log-probabilities of 3                                     (Eq. 8)
 //   5. target heads follow the critic's                                                (Eq. 9)
 //   6. the averaged policy follows encoder and actor                                  (Eq. 12)
@@ -22,7 +23,6 @@
 // whole batch.
 #include "learner/agent/sac/sac_agent.h"
 
-#include <array>
 #include <vector>
 
 #include "common/base/random.h"
@@ -45,6 +45,22 @@ namespace {
 float TargetEntropy(const SacConfig& sac, int action_size) {
   return float(sac.target_entropy != 0 ? sac.target_entropy
                                        : sac.target_entropy_per_action * action_size);
+}
+
+// Number of target critics that are drawn for an update; 0: all of them are used (Eq. 30).
+int DrawnCritics(const SacConfig& sac) {
+  return sac.target_critics == sac.critics ? 0 : sac.target_critics;
+}
+
+ActorValue ActorValueOf(const SacConfig& sac) {
+  return sac.actor_value == "mean" ? ActorValue::kMean : ActorValue::kMin;
+}
+
+// Arrays of one number for each row.
+std::vector<Array> NewArrays(int count, Engine* engine) {
+  std::vector<Array> arrays;
+  for (int i = 0; i < count; ++i) arrays.push_back(engine->NewArray(1));
+  return arrays;
 }
 
 class SacAgent final : public Agent {
@@ -96,7 +112,7 @@ class SacAgent final : public Agent {
   // Arrays and numbers of an update. Dimensions: b rows of this replica, A actions.
   const SquashedSample sample_;
   const Array targets_;                                             // y (b)
-  const std::array<Array, 2> q_gradients_;                          // (b)
+  const std::vector<Array> q_gradients_;                            // (b) for each critic
   const Array action_gradient_, mean_gradient_, log_std_gradient_;  // (b, A)
   const Number rate_factor_;                                        // of the optimisers
   const Number temperature_, next_temperature_;                     // before and after it
@@ -118,14 +134,14 @@ SacAgent::SacAgent(const Config& config, const ObservationSpec& spec, Engine* en
       sample_{engine->NewArray(spec.action_size), engine->NewArray(spec.action_size),
               engine->NewArray(1)},
       targets_(engine->NewArray(1)),
-      q_gradients_{engine->NewArray(1), engine->NewArray(1)},
+      q_gradients_(NewArrays(config.sac.critics, engine)),
       action_gradient_(engine->NewArray(spec.action_size)),
       mean_gradient_(engine->NewArray(spec.action_size)),
       log_std_gradient_(engine->NewArray(spec.action_size)),
       rate_factor_(engine->NewNumber()),
       temperature_(engine->NewNumber()),
       next_temperature_(engine->NewNumber()),
-      critic_numbers_(NewCriticNumbers(/*critics=*/2, engine)),
+      critic_numbers_(NewCriticNumbers(config.sac.critics, engine)),
       critic_squares_(engine->NewNumber()),
       actor_squares_(engine->NewNumber()),
       actor_loss_(engine->NewNumber()),
@@ -150,6 +166,8 @@ void SacAgent::ComputeTargets(const Seen& seen, Random* random) {
   engine_->Targets({.reward = batch.reward,
                     .bootstrap = batch.bootstrap,
                     .next_q = next_q,
+                    .drawn = DrawnCritics(config_.sac),
+                    .random = random,
                     .next_log_prob = sample_.log_prob,
                     .temperature = temperature_,
                     .reward_scale = float(config_.learner.reward_scale),
@@ -180,7 +198,8 @@ void SacAgent::UpdateActor(const Seen& seen, Random* random, const OnStageEnd& o
   engine_->SampleSquashedGaussian(mean, log_std, random, sample_);
   const auto q = networks_.ForwardCritic(seen.of_critic.obs, sample_.action);
   on_stage_end(UpdateStage::kForward);
-  engine_->EntropyActorLoss(sample_.log_prob, q, temperature_, q_gradients_, actor_loss_);
+  engine_->EntropyActorLoss(sample_.log_prob, q, ActorValueOf(config_.sac), temperature_,
+                            q_gradients_, actor_loss_);
   engine_->SquashedGaussianFigures(sample_, entropy_, saturation_);
   networks_.BackwardAction(q_gradients_, action_gradient_);
   engine_->SquashedGaussianBackward(sample_, action_gradient_, temperature_, mean_gradient_,

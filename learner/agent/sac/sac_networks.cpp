@@ -26,7 +26,7 @@ const nn::Features* FeaturesOf(const EncoderModule* encoder) {
 bool Separate(const Config& config) { return config.network.encoders == "separate"; }
 
 nn::HeadPlan CriticPlan(const Config& config, const ObservationSpec& spec, const char* name) {
-  return nn::PlanCritic(config.network, CriticSpec(config, spec), name);
+  return nn::PlanCritic(config.network, CriticSpec(config, spec), name, config.sac.critics);
 }
 
 std::vector<ParameterSet*> ParametersOf(const std::vector<Module*>& modules) {
@@ -123,16 +123,16 @@ SacNetworks::Gaussian SacNetworks::ForwardActor(Array vector) {
   return {output.mean, output.log_std};
 }
 
-SacNetworks::TwinQ SacNetworks::ForwardTarget(Array vector, Array action) {
+SacNetworks::Values SacNetworks::ForwardTarget(Array vector, Array action) {
   target_.ForwardObservation(vector);
   target_.ForwardAction(action);
-  return {target_.q(0), target_.q(1)};
+  return target_.values();
 }
 
-SacNetworks::TwinQ SacNetworks::ForwardCritic(Array vector, Array action) {
+SacNetworks::Values SacNetworks::ForwardCritic(Array vector, Array action) {
   critic_.ForwardObservation(vector);
   critic_.ForwardAction(action);
-  return {critic_.q(0), critic_.q(1)};
+  return critic_.values();
 }
 
 Number SacNetworks::ForwardBackwardAux(const Transitions& drawn) {

@@ -22,7 +22,6 @@
 // that returned the result.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -71,9 +70,9 @@ class SacNetworks {
     Array mean, log_std;  // (B, A), before tanh
   };
   Gaussian ForwardActor(Array vector);
-  using TwinQ = std::array<Array, 2>;  // each (B)
-  TwinQ ForwardTarget(Array vector, Array action);
-  TwinQ ForwardCritic(Array vector, Array action);
+  using Values = std::vector<Array>;  // (B) for each critic
+  Values ForwardTarget(Array vector, Array action);
+  Values ForwardCritic(Array vector, Array action);
 
   // Whether the head trains the encoder and there are labels (sac.aux). If so, ForwardBackwardAux
   // must run between the forward and the backward pass of this head.

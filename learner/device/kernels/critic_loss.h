@@ -19,15 +19,26 @@ SHOAL_KERNEL float LeastOf(const float* const* q, int count, int64_t b) {
   return least;
 }
 
+// The number of the smallest one; the first one on a tie.
+SHOAL_KERNEL int IndexOfLeast(const float* const* q, int count, int64_t b) {
+  int least = 0;
+  for (int i = 1; i < count; ++i) {
+    if (!(q[least][b] <= q[i][b])) least = i;
+  }
+  return least;
+}
+
 // Eq. 5, 18 and 20:
 //   y = reward_scale r + bootstrap discount (clip(min_i q'_i, low, high) - temperature log pi')
+// Eq. 30: i runs over `chosen`.
 struct Targets {
   static constexpr int kThreads = kElementThreads;
   using Shared = NoShared;
 
-  int rows = 0, critics = 0;
+  int rows = 0, critics = 0;  // critics: number of i
   const float *reward = nullptr, *bootstrap = nullptr;
   const float* next_q[kMostCritics] = {};
+  const int32_t* chosen = nullptr;       // (critics), indices of next_q; null: 0 ... critics - 1
   const float* next_log_prob = nullptr;  // null: no entropy term
   const double* temperature = nullptr;   // read if there is an entropy term
   float reward_scale = 1, discount = 1;
@@ -40,10 +51,18 @@ struct Targets {
   template <class Block>
   SHOAL_KERNEL void Run(Block& block, Shared&) const {
     ForElements(block, block.index(), rows, [&](int64_t b) {
-      float value = Clamp(LeastOf(next_q, critics, b), low, high);
+      float value = Clamp(LeastAt(b), low, high);
       if (next_log_prob != nullptr) value -= float(*temperature) * next_log_prob[b];
       y[b] = reward_scale * reward[b] + bootstrap[b] * discount * value;
     });
+  }
+
+ private:
+  SHOAL_KERNEL float LeastAt(int64_t b) const {
+    if (chosen == nullptr) return LeastOf(next_q, critics, b);
+    float least = next_q[chosen[0]][b];
+    for (int i = 1; i < critics; ++i) least = kernels::Least(least, next_q[chosen[i]][b]);
+    return least;
   }
 };
 

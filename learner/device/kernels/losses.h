@@ -12,18 +12,21 @@
 
 namespace shoal::learner::kernels {
 
-// Eq. 7: L = mean_b (temperature log pi - min(q_0, q_1)), rounded to f32; dL/dq_i = -1 / B for the
-// smaller of the two (q_0 on a tie), else 0.
+// Eq. 7 and 30: L = mean_b (temperature log pi - v), rounded to f32, where v is the smallest q_i or
+// their mean. Smallest: dL/dq_i = -1 / B for the smallest q_i (the first one on a tie), else 0.
+// Mean: dL/dq_i = -1 / (N B) for N critics.
 struct EntropyActorLoss {
   static constexpr int kThreads = 256;
   struct Shared {
     Reduction<Sums<1>, kThreads> sum;
   };
 
-  int rows = 0;
-  const float *log_prob = nullptr, *q0 = nullptr, *q1 = nullptr;
+  int rows = 0, critics = 0;
+  bool of_mean = false;  // v is the mean
+  const float* log_prob = nullptr;
+  const float* q[kMostCritics] = {};
   const double* temperature = nullptr;
-  float *q0_gradient = nullptr, *q1_gradient = nullptr;
+  float* q_gradient[kMostCritics] = {};
   double* loss = nullptr;
 
   int blocks() const { return 1; }
@@ -35,10 +38,9 @@ struct EntropyActorLoss {
       const auto weight = double(float(*temperature));
       auto sum = Sums<1>::Zero();
       ForAll<kThreads>(thread, rows, [&](int64_t b) {
-        const bool first = q0[b] <= q1[b];
-        q0_gradient[b] = first ? -1.f / float(rows) : 0.f;
-        q1_gradient[b] = first ? 0.f : -1.f / float(rows);
-        sum[0] += weight * log_prob[b] - Least(q0[b], q1[b]);
+        const int only = of_mean ? kAllCritics : IndexOfLeast(q, critics, b);
+        for (int i = 0; i < critics; ++i) q_gradient[i][b] = Gradient(i, only);
+        sum[0] += weight * log_prob[b] - (of_mean ? MeanAt(b) : double(q[only][b]));
       });
       shared.sum.of_thread[thread] = sum;
     });
@@ -46,6 +48,20 @@ struct EntropyActorLoss {
     block.Threads([&](int thread) {
       if (thread == 0) *loss = float(total / rows);
     });
+  }
+
+ private:
+  static constexpr int kAllCritics = -1;
+
+  SHOAL_KERNEL double MeanAt(int64_t b) const {
+    double sum = 0;
+    for (int i = 0; i < critics; ++i) sum += q[i][b];
+    return sum / critics;
+  }
+
+  SHOAL_KERNEL float Gradient(int i, int only) const {
+    if (only == kAllCritics) return -1.f / (float(critics) * float(rows));
+    return i == only ? -1.f / float(rows) : 0.f;
   }
 };
 
@@ -74,12 +90,10 @@ struct DeterministicActorLoss {
     block.Threads([&](int thread) {
       auto sums = Sums<3>::Zero();
       ForAll<kThreads>(thread, rows, [&](int64_t b) {
-        int smallest = 0;
-        for (int i = 1; i < critics; ++i) {
-          if (q[i][b] < q[smallest][b]) smallest = i;
-        }
-        for (int i = 0; i < critics; ++i)
+        const int smallest = IndexOfLeast(q, critics, b);
+        for (int i = 0; i < critics; ++i) {
           q_gradient[i][b] = i == smallest ? -1.f / float(rows) : 0.f;
+        }
         sums[0] -= double(q[smallest][b]);
       });
       ForAll<kThreads>(thread, numbers, [&](int64_t i) {

@@ -116,6 +116,12 @@ TEST(Validate, APolicyWithoutDeviationTakesNoKeysOfIt) {
                 HasSubstr("sac.temperature belongs"));
     EXPECT_THAT(refusal([](Config* c) { c->sac.temperature_learning_rate = 1e-3; }),
                 HasSubstr("sac.temperature_learning_rate"));
+    EXPECT_THAT(refusal([](Config* c) { c->sac.critics = 5; }),
+                HasSubstr("sac.critics belongs to learner.algorithm = sac"));
+    EXPECT_THAT(refusal([](Config* c) { c->sac.target_critics = 1; }),
+                HasSubstr("sac.target_critics belongs to learner.algorithm = sac"));
+    EXPECT_THAT(refusal([](Config* c) { c->sac.actor_value = "mean"; }),
+                HasSubstr("sac.actor_value belongs to learner.algorithm = sac"));
     EXPECT_THAT(refusal([](Config* c) { c->network.log_std = "clamped"; }),
                 HasSubstr("network.log_std: the policy of learner.algorithm = "));
   }
@@ -142,6 +148,19 @@ TEST(Validate, ATemperaturesFloorIsBelowItsStartAndOfOneThatMoves) {
                 c->sac.temperature = "fixed";
               }),
               HasSubstr("sac.temperature = fixed"));
+}
+
+TEST(Validate, ATargetOfCriticsHasNoMoreThanThereAre) {
+  const auto refusal = [](int critics, int target_critics) {
+    return Refusal([&](Config* c) {
+      c->sac.critics = critics;
+      c->sac.target_critics = target_critics;
+    });
+  };
+  EXPECT_EQ(refusal(2, 3),
+            "sac.target_critics = 3: expected at most sac.critics = 2, or 0 for all");
+  EXPECT_EQ(refusal(5, 2), "");
+  EXPECT_EQ(refusal(5, 5), "");
 }
 
 TEST(Validate, TheTargetEntropyIsSetInOneWay) {

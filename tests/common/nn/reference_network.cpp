@@ -168,10 +168,15 @@ Network::Gaussian Network::Actor(int batch, const Values& features, const Values
   return gaussian;
 }
 
+Values Network::Q(const std::string& head, int number, int batch, const Values& features,
+                  const Values& vector, const Values& action) const {
+  const Values input = Beside(batch, Observation(head, batch, features, vector), action);
+  return Mlp(head + ".q" + std::to_string(number), batch, input);
+}
+
 Network::TwinQ Network::Critic(const std::string& head, int batch, const Values& features,
                                const Values& vector, const Values& action) const {
-  const Values input = Beside(batch, Observation(head, batch, features, vector), action);
-  return {Mlp(head + ".q1", batch, input), Mlp(head + ".q2", batch, input)};
+  return {Q(head, 1, batch, features, vector, action), Q(head, 2, batch, features, vector, action)};
 }
 
 }  // namespace shoal::nn::reference

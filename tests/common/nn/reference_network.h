@@ -46,6 +46,9 @@ class Network {
     Values mean, log_std;  // (B, A)
   };
   Gaussian Actor(int batch, const Values& features, const Values& vector) const;
+  // Values (B) of head.qNUMBER for action (B, A). Numbers begin with 1.
+  Values Q(const std::string& head, int number, int batch, const Values& features,
+           const Values& vector, const Values& action) const;
   // Values (B) of head.q1 and head.q2 for action (B, A).
   struct TwinQ {
     Values q1, q2;

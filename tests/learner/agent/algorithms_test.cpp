@@ -112,6 +112,7 @@ TEST_P(EachAlgorithm, HasTheCriticsThatItsLineSays) {
   int critics = 0;
   while (tensors.contains(fmt::format("critic.q{}.output.weight", critics + 1))) ++critics;
   EXPECT_EQ(algorithm().critics, critics);
+  EXPECT_EQ(CriticsOf(config_), critics);
   EXPECT_EQ(critics == 0, AlgorithmKindOf(config_).on_policy);
 }
 

@@ -122,6 +122,12 @@ TEST_P(ReplicatedAgentTest, RunsRepeatBitForBitAndGoOnFromACheckpoint) {
 
 const Case kCases[] = {
     {"sac", [](Config*) {}},
+    {"sac_with_an_ensemble",
+     [](Config* config) {
+       config->sac.critics = 4;
+       config->sac.target_critics = 2;
+       config->sac.actor_value = "mean";
+     }},
     {"sac_with_copies",
      [](Config* config) {
        config->learner.batch = 12;

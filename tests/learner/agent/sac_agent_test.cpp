@@ -196,6 +196,16 @@ TEST(SacAgent, RestoredAgentGoesOnByteForByteForAHundredUpdates) {
   for (const Precision precision : Precisions()) ExpectExactRestart(SmallConfig(), precision, 100);
 }
 
+// The critics of a target are drawn from the update's stream, so a restored agent draws the same
+// critics.
+TEST(SacAgent, RestoredAgentGoesOnByteForByteWithAnEnsemble) {
+  Config config = SmallConfig();
+  config.sac.critics = 5;
+  config.sac.target_critics = 2;
+  config.sac.actor_value = "mean";
+  ExpectExactRestart(config, Precision::kF32, 20);
+}
+
 TEST(SacAgent, RestoredAgentGoesOnByteForByteWithFurtherEncoders) {
   for (const bool target : {false, true}) {
     for (const char* encoders : {"shared", "separate"}) {
@@ -428,6 +438,34 @@ TEST(SacAgent, ClippingScalesEachOptimisersGradientsDown) {
     EXPECT_LT(first_moments(1e-3, part), 1.001e-3) << part;
     EXPECT_NEAR(first_moments(100, part), norm, 1e-6 * norm) << part;
   }
+}
+
+// A checkpoint of twins does not fit an ensemble, and the first tensor that is missing is named.
+TEST(SacAgent, AnEnsembleKeepsTheNamesOfTheTwinsAndRefusesTheirCheckpoint) {
+  Config config = SmallConfig();
+  config.sac.critics = 3;
+  const auto twins = SmallAgent(SmallConfig()), three = SmallAgent(config);
+  const TensorMap of_twins = twins->AllTensors(), of_three = three->AllTensors();
+  for (const auto& [name, tensor] : of_twins) {
+    ASSERT_TRUE(of_three.contains(name)) << name;
+    EXPECT_EQ(of_three.at(name).data, tensor.data) << name;
+  }
+  for (const auto& [name, tensor] : of_three) {
+    EXPECT_NE(of_twins.contains(name), name.find(".q3.") != std::string::npos) << name;
+  }
+  EXPECT_NE(of_three.at("critic.q3.layer0.weight").data,
+            of_three.at("critic.q2.layer0.weight").data);
+  EXPECT_THAT([&] { three->Restore(of_twins, "checkpoint 5"); },
+              testing::ThrowsMessage<Error>(
+                  testing::AllOf(testing::HasSubstr("checkpoint 5"), testing::HasSubstr("q3"))));
+}
+
+TEST(SacAgent, AnEnsembleLearnsABandit) {
+  Config config;
+  config.sac.critics = 5;
+  config.sac.target_critics = 2;
+  config.sac.actor_value = "mean";
+  EXPECT_LT(BanditError(config, MakeAgent), 0.08);
 }
 
 TEST(SacAgent, LearnsABandit) { EXPECT_LT(BanditError(Config(), MakeAgent), 0.08); }

@@ -30,6 +30,11 @@ TEST(UpdateCost, CountsTheProductsOfAllPasses) {
   const UpdateCost cost = CostOfUpdate(SmallNetworks("sac"), State());
   EXPECT_EQ(cost.encoder_parameters, 0);
   EXPECT_DOUBLE_EQ(cost.flop, 2 * 10 * (4 * critics + actor + (3 * actor + 2 * critics) / 2));
+  // An ensemble of five has two and a half times as many critics.
+  Config five = SmallNetworks("sac");
+  five.sac.critics = 5;
+  EXPECT_DOUBLE_EQ(CostOfUpdate(five, State()).flop,
+                   2 * 10 * (10 * critics + actor + (3 * actor + 5 * critics) / 2));
   // DDPG's have one Q and no deviation.
   const double mean = 3 * 8 + 8 * 2, critic = critics / 2;
   EXPECT_DOUBLE_EQ(CostOfUpdate(SmallNetworks("ddpg"), State()).flop,

@@ -231,6 +231,15 @@ const AgentCase kAgentCases[] = {
        config->network.activation = "tanh";
        config->network.hidden = {10, 12, 9};
      }},
+    {"sac_ensemble",
+     [](Config* config, ObservationSpec* spec) {
+       WithoutPixels(spec);
+       config->sac.critics = 5;
+       config->sac.target_critics = 2;
+       config->sac.actor_value = "mean";
+       config->learner.actor_period = 2;
+     }},
+    {"sac_smallest_of_three", [](Config* config, ObservationSpec*) { config->sac.critics = 3; }},
     {"td3", [](Config* config, ObservationSpec*) { config->learner.algorithm = "td3"; }},
     {"ddpg",
      [](Config* config, ObservationSpec*) {

@@ -10,6 +10,8 @@
 #include <cmath>
 #include <deque>
 #include <numbers>
+#include <set>
+#include <utility>
 
 #include "common/nn/host_memory.h"
 #include "common/nn/team.h"
@@ -90,6 +92,60 @@ TEST_F(CpuEngineTest, TargetsAreTheRewardAndTheBoundedSmallestValueLessTheEntrop
   EXPECT_LT(RelativeError(HostValues(without), expected_without), kTolerance);
 }
 
+// The reference tries all pairs. One pair fits the whole batch.
+TEST_F(CpuEngineTest, TargetsOfDrawnCriticsAreTheSmallestValueOfTheseCritics) {
+  const std::array q{Filled(1, 1), Filled(1, 2), Filled(1, 3), Filled(1, 4)};
+  const Array y = Poisoned(1);
+  Random random(5);
+  std::set<std::pair<size_t, size_t>> drawn;
+  for (int draw = 0; draw < 60; ++draw) {
+    engine_.Targets({.reward = batch_.reward,
+                     .bootstrap = batch_.bootstrap,
+                     .next_q = q,
+                     .drawn = 2,
+                     .random = &random,
+                     .next_log_prob = {},
+                     .temperature = {},
+                     .reward_scale = 1,
+                     .discount = 0.9f,
+                     .bounds = {}},
+                    y);
+    int fitting = 0;
+    for (size_t i = 0; i < q.size(); ++i) {
+      for (size_t j = i + 1; j < q.size(); ++j) {
+        Values expected;
+        for (size_t b = 0; b < kBatch; ++b) {
+          const double value = std::min(Of(q[i])[b], Of(q[j])[b]);
+          expected.push_back(Of(batch_.reward)[b] + 0.9 * Of(batch_.bootstrap)[b] * value);
+        }
+        if (RelativeError(HostValues(y), expected) > kTolerance) continue;
+        drawn.insert({i, j});
+        ++fitting;
+      }
+    }
+    ASSERT_EQ(fitting, 1);
+  }
+  EXPECT_EQ(drawn.size(), 6u) << "pairs that were drawn";
+}
+
+TEST_F(CpuEngineTest, AnActorsLossByTheMeanOfTheCritics) {
+  const std::array q{Filled(1, 1), Filled(1, 2), Filled(1, 3)};
+  const std::array gradients{Poisoned(1), Poisoned(1), Poisoned(1)};
+  const Array log_prob = Filled(1, 4);
+  const Number loss = Holding(NAN);
+  engine_.EntropyActorLoss(log_prob, q, ActorValue::kMean, Holding(0.4), gradients, loss);
+  engine_.Gather(&adam_, Holding(NAN));
+  double expected = 0;
+  for (size_t b = 0; b < kBatch; ++b) {
+    expected += 0.4 * Of(log_prob)[b] / kBatch;
+    for (const Array values : q) expected -= Of(values)[b] / (3 * kBatch);
+  }
+  EXPECT_NEAR(engine_.Read(loss), expected, kTolerance);
+  for (const Array gradient : gradients) {
+    EXPECT_THAT(Of(gradient), Each(testing::DoubleNear(-1.0 / (3 * kBatch), kTolerance)));
+  }
+}
+
 TEST_F(CpuEngineTest, ACriticsLossHasItsGradientsAtOnceAndItsFiguresAfterGather) {
   const std::array q{Filled(1, 1), Filled(1, 2)};
   const Array y = Filled(1, 3);
@@ -141,7 +197,7 @@ TEST_F(CpuEngineTest, AnEntropyActorsLossAndItsWayToThePolicy) {
   const std::array q{Filled(1, 3), Filled(1, 4)}, gradients{Poisoned(1), Poisoned(1)};
   const Number temperature = Holding(0.4), loss = Holding(NAN), entropy = Holding(NAN),
                saturation = Holding(NAN);
-  engine_.EntropyActorLoss(sample.log_prob, q, temperature, gradients, loss);
+  engine_.EntropyActorLoss(sample.log_prob, q, ActorValue::kMin, temperature, gradients, loss);
   engine_.SquashedGaussianFigures(sample, entropy, saturation);
   const Array action_gradient = Filled(kActions, 6), mean_gradient = Poisoned(kActions),
               log_std_gradient = Poisoned(kActions);

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
+
 #include "tests/common/nn/gradient_check.h"
 
 namespace shoal::learner {
@@ -93,18 +95,46 @@ TEST(CriticLoss, GradientIsTheCentralDifference) {
   }
 }
 
-TEST(ActorLoss, IsTheMeanOfEntropyTermLessTheSmallerValue) {
-  const float log_prob[2] = {2.f, -1.f}, q0[2] = {3.f, 7.f}, q1[2] = {4.f, 5.f};
-  EXPECT_FLOAT_EQ(ActorLossForward(2, log_prob, q0, q1, 0.5f), ((1.f - 3.f) + (-0.5f - 5.f)) / 2);
+TEST(TdTargets, TakeTheSmallestOfAnyNumberOfHeads) {
+  const float reward[2] = {0, 0}, bootstrap[2] = {1, 1};
+  const float q1[2] = {3, 9}, q2[2] = {4, 7}, q3[2] = {2, 8};
+  float y[2];
+  const auto targets = [&](std::span<const float* const> heads) {
+    TdTargets(2, {reward, bootstrap, heads}, {.reward_scale = 1, .discount = 1}, y);
+    return std::vector(y, y + 2);
+  };
+  EXPECT_THAT(targets(std::array<const float*, 3>{q1, q2, q3}), ::testing::ElementsAre(2, 7));
+  EXPECT_THAT(targets(std::array<const float*, 1>{q1}), ::testing::ElementsAre(3, 9));
 }
 
-TEST(ActorLoss, GradientGoesToTheSmallerHeadAlone) {
-  const float q0[3] = {3.f, 7.f, 1.f}, q1[3] = {4.f, 5.f, 1.f};
-  float g0[3], g1[3];
-  ActorLossBackward(3, q0, q1, g0, g1);
-  const float share = -1.f / 3;
-  EXPECT_EQ(std::vector<float>(g0, g0 + 3), (std::vector<float>{share, 0, share}));
-  EXPECT_EQ(std::vector<float>(g1, g1 + 3), (std::vector<float>{0, share, 0}));
+TEST(ActorLoss, IsTheMeanOfEntropyTermLessTheSmallestValueOrTheMeanValue) {
+  const float log_prob[2] = {2.f, -1.f}, q0[2] = {3.f, 7.f}, q1[2] = {4.f, 5.f}, q2[2] = {8, 6};
+  const float* const two[] = {q0, q1};
+  const float* const three[] = {q2, q0, q1};
+  EXPECT_FLOAT_EQ(ActorLossForward(2, log_prob, two, ActorValue::kMin, 0.5f),
+                  ((1.f - 3.f) + (-0.5f - 5.f)) / 2);
+  EXPECT_FLOAT_EQ(ActorLossForward(2, log_prob, three, ActorValue::kMin, 0.5f),
+                  ((1.f - 3.f) + (-0.5f - 5.f)) / 2);
+  EXPECT_FLOAT_EQ(ActorLossForward(2, log_prob, three, ActorValue::kMean, 0.5f),
+                  ((1.f - 5.f) + (-0.5f - 6.f)) / 2);
+}
+
+TEST(ActorLoss, GradientGoesToTheSmallestHeadAloneOrToAllHeads) {
+  const float q0[4] = {3, 7, 1, 4}, q1[4] = {4, 5, 1, 2}, q2[4] = {5, 5, 3, 1};
+  const float* const q[] = {q0, q1, q2};
+  const auto gradients = [&](ActorValue value) {
+    std::vector<std::vector<float>> of_heads(3, std::vector<float>(4, NAN));
+    const std::array<float*, 3> to{of_heads[0].data(), of_heads[1].data(), of_heads[2].data()};
+    ActorLossBackward(4, q, value, to);
+    return of_heads;
+  };
+  const float share = -1.f / 4, third = -1.f / 12;
+  EXPECT_THAT(gradients(ActorValue::kMin),
+              ::testing::ElementsAre(::testing::ElementsAre(share, 0, share, 0),
+                                     ::testing::ElementsAre(0, share, 0, 0),
+                                     ::testing::ElementsAre(0, 0, 0, share)));
+  EXPECT_THAT(gradients(ActorValue::kMean),
+              ::testing::Each(::testing::Each(::testing::FloatEq(third))));
 }
 
 TEST(LabelLoss, GradientIsTheCentralDifferenceOfTheWeightedMeanSquare) {

@@ -120,6 +120,13 @@ const Variant kVariants[] = {
        config->sac.critic_blocks = true;
        config->learner.normalise_vectors = true;
      }},
+    {"sac_ensemble",
+     [](Config* config) {
+       config->sac.critics = 4;
+       config->sac.target_critics = 2;
+       config->sac.actor_value = "mean";
+       config->learner.actor_period = 2;
+     }},
     {"td3",
      [](Config* config) {
        config->learner.algorithm = "td3";

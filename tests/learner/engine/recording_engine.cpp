@@ -114,7 +114,7 @@ void RecordingEngine::AddClippedNoise(Array action, Number sigma, double limit, 
 }
 
 void RecordingEngine::Targets(const TargetTerms& terms, Array y) {
-  Keep("Targets", terms.reward, terms.bootstrap, terms.next_q, terms.next_log_prob,
+  Keep("Targets", terms.reward, terms.bootstrap, terms.next_q, terms.drawn, terms.next_log_prob,
        terms.temperature, terms.reward_scale, terms.discount, terms.bounds.low, terms.bounds.high,
        y);
   engine_->Targets(terms, y);
@@ -131,10 +131,11 @@ void RecordingEngine::CriticLoss(std::span<const Array> q, Array y,
   engine_->CriticLoss(q, y, q_gradients, figures);
 }
 
-void RecordingEngine::EntropyActorLoss(Array log_prob, std::span<const Array> q, Number temperature,
-                                       std::span<const Array> q_gradients, Number loss) {
-  Keep("EntropyActorLoss", log_prob, q, temperature, q_gradients, loss);
-  engine_->EntropyActorLoss(log_prob, q, temperature, q_gradients, loss);
+void RecordingEngine::EntropyActorLoss(Array log_prob, std::span<const Array> q, ActorValue value,
+                                       Number temperature, std::span<const Array> q_gradients,
+                                       Number loss) {
+  Keep("EntropyActorLoss", log_prob, q, int(value), temperature, q_gradients, loss);
+  engine_->EntropyActorLoss(log_prob, q, value, temperature, q_gradients, loss);
 }
 
 void RecordingEngine::DeterministicActorLoss(std::span<const Array> q, Array mean, Array action,

@@ -97,25 +97,61 @@ TEST_F(LossKernels, CriticsOfOneOrMoreFunctions) {
   }
 }
 
+TEST_F(LossKernels, TargetsOfChosenFunctions) {
+  constexpr int kRows = 67;
+  const std::vector<float> reward = Random(kRows), bootstrap = Random(kRows, 0, 1);
+  const std::vector<float> q0 = Random(kRows), q1 = Random(kRows), q2 = Random(kRows);
+  std::vector<float> expected(kRows);
+  const std::vector<const float*> q{q2.data(), q0.data()};
+  TdTargets(kRows, {reward.data(), bootstrap.data(), q}, {2, 0.9f, 0, {-0.4f, 0.1f}},
+            expected.data());
+  float* y = Out(kRows);
+  Run(kernels::Targets{.rows = kRows,
+                       .critics = 2,
+                       .reward = In(reward),
+                       .bootstrap = In(bootstrap),
+                       .next_q = {In(q0), In(q1), In(q2)},
+                       .chosen = In(std::vector<int32_t>{2, 0}),
+                       .reward_scale = 2,
+                       .discount = 0.9f,
+                       .low = -0.4f,
+                       .high = 0.1f,
+                       .y = y});
+  ExpectClose(y, expected, 1e-6);
+}
+
 TEST_F(LossKernels, ActorsWithEntropy) {
   constexpr int kRows = 300;
-  const std::vector<float> log_prob = Random(kRows, -5, 5), q0 = Random(kRows);
-  std::vector<float> q1 = Random(kRows), first(kRows), second(kRows);
-  q1[7] = q0[7];  // a tie
-  const float loss = ActorLossForward(kRows, log_prob.data(), q0.data(), q1.data(), 0.2f);
-  ActorLossBackward(kRows, q0.data(), q1.data(), first.data(), second.data());
-  kernels::EntropyActorLoss kernel{.rows = kRows,
-                                   .log_prob = In(log_prob),
-                                   .q0 = In(q0),
-                                   .q1 = In(q1),
-                                   .temperature = In(std::vector<double>{0.2}),
-                                   .q0_gradient = Out(kRows),
-                                   .q1_gradient = Out(kRows),
-                                   .loss = Cell()};
-  Run(kernel);
-  ExpectNumber(kernel.loss, loss);
-  ExpectClose(kernel.q0_gradient, first, 0);
-  ExpectClose(kernel.q1_gradient, second, 0);
+  const std::vector<float> log_prob = Random(kRows, -5, 5);
+  for (const int critics : {2, 3, 5}) {
+    for (const ActorValue value : {ActorValue::kMin, ActorValue::kMean}) {
+      kernels::EntropyActorLoss kernel{.rows = kRows,
+                                       .critics = critics,
+                                       .of_mean = value == ActorValue::kMean,
+                                       .log_prob = In(log_prob),
+                                       .temperature = In(std::vector<double>{0.2}),
+                                       .loss = Cell()};
+      std::vector<std::vector<float>> q, gradients;
+      for (int i = 0; i < critics; ++i) {
+        q.push_back(Random(kRows));
+        q[size_t(i)][7] = q[0][7];  // a tie
+        gradients.emplace_back(kRows);
+        kernel.q[i] = In(q.back());
+        kernel.q_gradient[i] = Out(kRows);
+      }
+      std::vector<const float*> values;
+      std::vector<float*> to;
+      for (size_t i = 0; i < q.size(); ++i) {
+        values.push_back(q[i].data());
+        to.push_back(gradients[i].data());
+      }
+      const float loss = ActorLossForward(kRows, log_prob.data(), values, value, 0.2f);
+      ActorLossBackward(kRows, values, value, to);
+      Run(kernel);
+      ExpectNumber(kernel.loss, loss);
+      for (int i = 0; i < critics; ++i) ExpectClose(kernel.q_gradient[i], gradients[size_t(i)], 0);
+    }
+  }
 }
 
 TEST_F(LossKernels, ActorsWithoutEntropy) {
