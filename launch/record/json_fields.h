@@ -13,6 +13,11 @@ inline std::optional<double> NumberOrNothing(const nlohmann::json& value) {
   return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
 }
 
+inline std::optional<double> NumberOrNothing(const nlohmann::json& object, const char* key) {
+  const auto it = object.find(key);
+  return it != object.end() ? NumberOrNothing(*it) : std::nullopt;
+}
+
 inline std::string TextOrEmpty(const nlohmann::json& object, const char* key) {
   const auto it = object.find(key);
   return it != object.end() && it->is_string() ? it->get<std::string>() : "";

@@ -15,6 +15,7 @@
 #include "common/nn/precision.h"
 #include "common/run_folder/learner_device_file.h"
 #include "common/run_folder/run_file_names.h"
+#include "launch/record/json_fields.h"
 #include "launch/record/machine.h"
 
 namespace shoal::launch {
@@ -64,11 +65,6 @@ ordered_json Changes(const RunMeta& meta) {
                     {"to", change.to}});
   }
   return list;
-}
-
-std::optional<double> NumberIfAny(const nlohmann::json& object, const char* name) {
-  const auto it = object.find(name);
-  return it != object.end() && it->is_number() ? std::optional(it->get<double>()) : std::nullopt;
 }
 
 SettingChange ReadChange(const nlohmann::json& object) {
@@ -179,13 +175,13 @@ RunMeta ReadRunMeta(const std::filesystem::path& run) {
     object.at("env_steps").get_to(meta.env_steps);
     object.at("updates").get_to(meta.updates);
     object.at("restarts").get_to(meta.restarts);
-    meta.cpu_seconds = NumberIfAny(object, "cpu_seconds");
-    meta.energy_wh = NumberIfAny(object, "energy_wh");
+    meta.cpu_seconds = NumberOrNothing(object, "cpu_seconds");
+    meta.energy_wh = NumberOrNothing(object, "energy_wh");
     meta.resends = object.value("resends", uint64_t{0});
     meta.updates_lost = object.value("updates_lost", uint64_t{0});
     meta.faulty_episodes = object.value("faulty_episodes", meta.faulty_episodes);
     meta.exit = object.value("exit", meta.exit);
-    meta.final_return = NumberIfAny(object, "final_return_mean");
+    meta.final_return = NumberOrNothing(object, "final_return_mean");
     for (const auto& change : object.value("changes", nlohmann::json::array())) {
       meta.changes.push_back(ReadChange(change));
     }

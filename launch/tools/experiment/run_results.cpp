@@ -27,6 +27,8 @@ void ReadMeta(const json& meta, RunResults* results) {
   meta.at("env_steps").get_to(results->env_steps);
   meta.at("updates").get_to(results->updates);
   meta.at("wall_seconds").get_to(results->wall_seconds);
+  results->cpu_seconds = NumberOrNothing(meta, "cpu_seconds");
+  results->energy_wh = NumberOrNothing(meta, "energy_wh");
   if (meta.contains("commits")) {
     meta.at("commits").get_to(results->commits);
   } else {

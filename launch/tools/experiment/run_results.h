@@ -34,6 +34,7 @@ struct RunResults {
   int cores = 0;  // cores of the machine that the run may use
   uint64_t env_steps = 0, updates = 0;
   double wall_seconds = 0;
+  std::optional<double> cpu_seconds{}, energy_wh{};  // run_meta.h; empty if not counted
 
   // Value that a tuner maximises: the final success rate, or the final mean return if the task has
   // no success. Empty without a final evaluation.

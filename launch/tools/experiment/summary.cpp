@@ -122,6 +122,8 @@ ordered_json RunJson(const RunOutcome& outcome, const std::filesystem::path& fol
   object["env_steps"] = if_begun(results.env_steps);
   object["updates"] = if_begun(results.updates);
   object["wall_seconds"] = if_begun(results.wall_seconds);
+  object["cpu_seconds"] = OrNull(results.cpu_seconds);
+  object["energy_wh"] = OrNull(results.energy_wh);
   object["n_to_target"] = OrNull(outcome.n_to_target);
   object["success"] = final ? OrNull(final->success) : nullptr;
   object["episodes"] = final ? ordered_json(final->episodes) : nullptr;

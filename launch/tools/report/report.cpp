@@ -228,6 +228,11 @@ std::string DefinitionsHtml(const std::vector<Definition>& definitions) {
   return html;
 }
 
+// An optional number with a fixed number of digits after the point, else "-".
+std::string NumberOrDash(const std::optional<double>& number, int digits) {
+  return number ? fmt::format("{:.{}f}", *number, digits) : "-";
+}
+
 std::string RunsHtml(const std::vector<RunGroup>& groups) {
   std::vector<Row> rows;
   for (const RunGroup& group : groups) {
@@ -235,12 +240,13 @@ std::string RunsHtml(const std::vector<RunGroup>& groups) {
       rows.push_back({run.name, run.exit.empty() ? "-" : run.exit, std::to_string(run.env_steps),
                       std::to_string(run.updates), fmt::format("{:.0f}", run.wall_seconds),
                       fmt::format("{:.2f}", run.wall_seconds * run.cores / 3600),
+                      NumberOrDash(run.cpu_seconds, 0), NumberOrDash(run.energy_wh, 2),
                       fmt::format("{} ({} cores)", run.cpu, run.cores), run.precision,
                       fmt::format("{}", fmt::join(run.commits, ", ")), run.started});
     }
   }
-  return TableHtml({"run", "end", "env steps", "updates", "wall, s", "core-hours", "machine",
-                    "precision", "builds", "started (UTC)"},
+  return TableHtml({"run", "end", "env steps", "updates", "wall, s", "core-hours", "CPU, s",
+                    "energy, Wh", "machine", "precision", "builds", "started (UTC)"},
                    rows);
 }
 

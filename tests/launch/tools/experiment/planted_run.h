@@ -53,6 +53,8 @@ class RunPlanter {
                                 {"env_steps", 1000},
                                 {"updates", 100},
                                 {"wall_seconds", 360.0},
+                                {"cpu_seconds", 712.4},
+                                {"energy_wh", 1.234},
                                 {"commits", {"abc", "def"}},
                                 {"machine", {{"cpu", "a fast one"}, {"cores", 2}}}};
     meta["error"] = error.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(error);

@@ -65,6 +65,8 @@ TEST_F(SummaryTest, HasEveryMemberThatOthersRead) {
   EXPECT_EQ(run.at("env_steps"), 1000);
   EXPECT_EQ(run.at("updates"), 100);
   EXPECT_EQ(run.at("wall_seconds"), 360);
+  EXPECT_EQ(run.at("cpu_seconds"), 712.4);
+  EXPECT_EQ(run.at("energy_wh"), 1.234);
   EXPECT_EQ(run.at("n_to_target"), 100);
   EXPECT_EQ(run.at("success"), 1.0);
   EXPECT_EQ(run.at("episodes"), 20);

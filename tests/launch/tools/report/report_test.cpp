@@ -36,7 +36,7 @@ TEST(Report, IsOnePageThatNeedsNothingElse) {
       ReportHtml(GatherReport({.names = {"a"}, .run_dir = folder.path().string()}));
   for (const char* part :
        {"100.0 % [96.3, 100.0] (100/100)", ">env steps<", ">wall time, minutes<",
-        "&quot;batch&quot;: ", "abc, def", "a fast one (2 cores)",
+        "&quot;batch&quot;: ", "abc, def", "a fast one (2 cores)", "<td>712</td><td>1.23</td>",
         "/config.json --run-name a-again --set run_dir=runs", "data:video/mp4;base64,TWFu"}) {
     EXPECT_THAT(html, HasSubstr(part));
   }
