@@ -171,11 +171,11 @@ void ValidateEncoders(const Config& config) {
   }
 }
 
-// Checks the ensemble of critics. Algorithms without section sac have defaults here.
-void ValidateCritics(const SacConfig& sac) {
-  if (sac.target_critics > sac.critics) {
+// Checks the ensemble of critics. Algorithms without this ensemble have defaults here.
+void ValidateCritics(const Config& config) {
+  if (config.sac.target_critics > config.sac.critics) {
     throw UsageError("sac.target_critics = {}: expected at most sac.critics = {}, or 0 for all",
-                     sac.target_critics, sac.critics);
+                     config.sac.target_critics, config.sac.critics);
   }
 }
 
@@ -261,7 +261,7 @@ void Validate(const Config& config) {
   }
   if (!LearnsOnPolicy(config)) {
     ValidateEncoders(config);
-    ValidateCritics(config.sac);
+    ValidateCritics(config);
     ValidatePrivileged(config);
     ValidateReplay(config);
   }
