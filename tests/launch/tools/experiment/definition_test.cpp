@@ -68,9 +68,10 @@ TEST(Definition, SurvivesItsOwnJson) {
   object["frames"] = {100, 500};
   object["reference"] = "planet-6";
   const Definition definition = ParseDefinition(object, "x.json", "x");
-  EXPECT_EQ(ToJson(ParseDefinition(ToJson(definition), "y.json", "y")), ToJson(definition));
-  EXPECT_THAT(definition.frames, ElementsAre(100, 500));
-  EXPECT_EQ(definition.reference, "planet-6");
+  const Definition again = ParseDefinition(ToJson(definition), "y.json", "y");
+  EXPECT_EQ(ToJson(again), ToJson(definition));
+  EXPECT_THAT(again.frames, ElementsAre(100, 500));
+  EXPECT_EQ(again.reference, "planet-6");
   EXPECT_EQ(definition.name, "named");
 }
 
