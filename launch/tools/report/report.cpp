@@ -8,6 +8,7 @@
 
 #include "common/base/build_info.h"
 #include "common/base/clock.h"
+#include "common/base/error.h"
 #include "common/base/escape_markup.h"
 #include "common/base/files.h"
 #include "common/config/config_io.h"
@@ -17,6 +18,7 @@
 #include "launch/tools/experiment/statistics_json.h"
 #include "launch/tools/experiment/summary.h"
 #include "launch/tools/report/command_line.h"
+#include "launch/tools/report/curves.h"
 #include "launch/tools/report/report_curves.h"
 
 namespace shoal::launch {
