@@ -8,9 +8,8 @@
 #include <cmath>
 #include <functional>
 
-#include "common/base/error.h"
 #include "common/nn/policy.h"
-#include "tests/learner/agent/agent_fixture.h"
+#include "tests/learner/agent/sac_agent_fixture.h"
 
 namespace shoal::learner {
 namespace {
@@ -21,24 +20,6 @@ using testing::IsEmpty;
 using testing::Not;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
-std::unique_ptr<Agent> SmallAgent(const Config& config, Precision precision = Precision::kF32) {
-  return MakeAgent(config, SmallSpec(), precision);
-}
-
-void UpdateTimes(Agent* agent, int updates, uint64_t first_key = 100) {
-  for (int u = 0; u < updates; ++u) {
-    const RandomBatch batch(SmallSpec(), SmallConfig().learner.batch, first_key + uint64_t(u));
-    ASSERT_TRUE(agent->Update(batch.View()).finite);
-  }
-}
-
-// Both precisions where the CPU has them.
-std::vector<Precision> Precisions() {
-  if (nn::ChoosePrecision("auto", /*pixels=*/true) == Precision::kBf16)
-    return {Precision::kF32, Precision::kBf16};
-  return {Precision::kF32};
-}
 
 TEST(SacAgent, EncoderAndCriticGetNoGradientFromTheActor) {
   Config with = SmallConfig(), without = SmallConfig();
@@ -57,13 +38,6 @@ TEST(SacAgent, EncoderAndCriticGetNoGradientFromTheActor) {
   for (const char* prefix : {"actor.", "temperature.", "adam.m.actor."}) {
     EXPECT_THAT(Differences(after_a, after_b, prefix), Not(IsEmpty()));
   }
-}
-
-Config WithEncoders(const char* encoders, bool target_encoder) {
-  Config config = SmallConfig();
-  config.network.encoders = encoders;
-  config.network.target_encoder = target_encoder;
-  return config;
 }
 
 TEST(SacAgent, AnActorsOwnEncoderIsTrainedByItsLossAlone) {
@@ -179,41 +153,6 @@ TEST(SacAgent, TargetsStartAtTheCriticAndMoveByTauEveryPeriod) {
   }
 }
 
-void ExpectExactRestart(const Config& config, Precision precision, int updates) {
-  const auto original = SmallAgent(config, precision), restored = SmallAgent(config, precision);
-  UpdateTimes(original.get(), 7);
-  // Through the bytes of a file, as a checkpoint does.
-  restored->Restore(
-      nn::ReadSafetensors(nn::WriteSafetensors(original->AllTensors(), {}), "checkpoint"),
-      "checkpoint");
-  EXPECT_EQ(restored->updates(), 7u);
-  UpdateTimes(original.get(), updates, 500);
-  UpdateTimes(restored.get(), updates, 500);
-  EXPECT_THAT(Differences(original->AllTensors(), restored->AllTensors()), IsEmpty());
-}
-
-TEST(SacAgent, RestoredAgentGoesOnByteForByteForAHundredUpdates) {
-  for (const Precision precision : Precisions()) ExpectExactRestart(SmallConfig(), precision, 100);
-}
-
-// The critics of a target are drawn from the update's stream, so a restored agent draws the same
-// critics.
-TEST(SacAgent, RestoredAgentGoesOnByteForByteWithAnEnsemble) {
-  Config config = SmallConfig();
-  config.sac.critics = 5;
-  config.sac.target_critics = 2;
-  config.sac.actor_value = "mean";
-  ExpectExactRestart(config, Precision::kF32, 20);
-}
-
-TEST(SacAgent, RestoredAgentGoesOnByteForByteWithFurtherEncoders) {
-  for (const bool target : {false, true}) {
-    for (const char* encoders : {"shared", "separate"}) {
-      ExpectExactRestart(WithEncoders(encoders, target), Precision::kF32, 3);
-    }
-  }
-}
-
 TEST(SacAgent, RunsRepeatByteForByteWithTheSameNumberOfThreads) {
   for (const Precision precision : Precisions()) {
     for (const int threads : {1, 2}) {
@@ -270,30 +209,6 @@ TEST(SacAgent, NonFiniteActorLossTakesTheCriticsStepBack) {
   EXPECT_THAT(Differences(before, agent->AllTensors()), IsEmpty());
   // The layers have the old weights back as well: the critic's loss is what it was.
   EXPECT_EQ(Get(agent->Update(batch.View()), kCriticLoss), Get(stats, kCriticLoss));
-}
-
-TEST(SacAgent, RestoreRefusesWhatDoesNotFitAndChangesNothing) {
-  const auto agent = SmallAgent(SmallConfig()), other = SmallAgent(SmallConfig());
-  UpdateTimes(other.get(), 2);
-  const TensorMap before = agent->AllTensors();
-  for (const char* name : {"encoder.conv1.bias", "actor.mlp.output.weight", "target.q2.output.bias",
-                           "adam.v.critic.q1.layer0.weight", "adam.steps.temperature",
-                           "temperature.log", "agent.updates"}) {
-    TensorMap tensors = other->AllTensors();
-    ASSERT_EQ(tensors.count(name), 1u) << name;
-    tensors.at(name).shape.push_back(2);
-    EXPECT_THROW(agent->Restore(tensors, "checkpoint"), Error) << name;
-    tensors.erase(name);
-    EXPECT_THAT([&] { agent->Restore(tensors, "checkpoint 5"); },
-                testing::ThrowsMessage<Error>(
-                    testing::AllOf(testing::HasSubstr("checkpoint 5"), testing::HasSubstr(name))));
-    EXPECT_THAT(Differences(before, agent->AllTensors()), IsEmpty()) << name;
-  }
-  // The layers too: both go on alike.
-  const auto untouched = SmallAgent(SmallConfig());
-  UpdateTimes(agent.get(), 2);
-  UpdateTimes(untouched.get(), 2);
-  EXPECT_THAT(Differences(agent->AllTensors(), untouched->AllTensors()), IsEmpty());
 }
 
 TEST(SacAgent, PolicyTensorsAreTheAgentsOwnAndLoadIntoAPolicy) {
@@ -438,26 +353,6 @@ TEST(SacAgent, ClippingScalesEachOptimisersGradientsDown) {
     EXPECT_LT(first_moments(1e-3, part), 1.001e-3) << part;
     EXPECT_NEAR(first_moments(100, part), norm, 1e-6 * norm) << part;
   }
-}
-
-// A checkpoint of twins does not fit an ensemble, and the first tensor that is missing is named.
-TEST(SacAgent, AnEnsembleKeepsTheNamesOfTheTwinsAndRefusesTheirCheckpoint) {
-  Config config = SmallConfig();
-  config.sac.critics = 3;
-  const auto twins = SmallAgent(SmallConfig()), three = SmallAgent(config);
-  const TensorMap of_twins = twins->AllTensors(), of_three = three->AllTensors();
-  for (const auto& [name, tensor] : of_twins) {
-    ASSERT_TRUE(of_three.contains(name)) << name;
-    EXPECT_EQ(of_three.at(name).data, tensor.data) << name;
-  }
-  for (const auto& [name, tensor] : of_three) {
-    EXPECT_NE(of_twins.contains(name), name.find(".q3.") != std::string::npos) << name;
-  }
-  EXPECT_NE(of_three.at("critic.q3.layer0.weight").data,
-            of_three.at("critic.q2.layer0.weight").data);
-  EXPECT_THAT([&] { three->Restore(of_twins, "checkpoint 5"); },
-              testing::ThrowsMessage<Error>(
-                  testing::AllOf(testing::HasSubstr("checkpoint 5"), testing::HasSubstr("q3"))));
 }
 
 TEST(SacAgent, AnEnsembleLearnsABandit) {
