@@ -142,9 +142,7 @@ void NoteFormerNames(const ordered_json& holder) {
 Definition ParseDefinition(const ordered_json& object, const std::string& source,
                            const std::string& stem) {
   JsonMembers members(object, source);
-  if (members.Text("schema", "") != kDefinitionSchema) {
-    throw UsageError("{}: expected an object of schema '{}'", source, kDefinitionSchema);
-  }
+  members.NeedSchema(kDefinitionSchema);
   Definition definition;
   definition.name = members.Text("name", stem);
   if (!IsFileName(definition.name)) {

@@ -47,6 +47,12 @@ JsonMembers::JsonMembers(const ordered_json& object, std::string source)
   if (!object.is_object()) throw UsageError("{}: expected a JSON object", source_);
 }
 
+void JsonMembers::NeedSchema(const char* schema) {
+  if (Text("schema", "") != schema) {
+    throw UsageError("{}: expected an object of schema '{}'", source_, schema);
+  }
+}
+
 const ordered_json* JsonMembers::Find(const std::string& name) {
   known_.push_back(name);
   const auto it = object_.find(name);

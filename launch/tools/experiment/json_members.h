@@ -28,6 +28,8 @@ class JsonMembers {
 
   const std::string& source() const { return source_; }
 
+  // Throws if the member `schema` is missing or has another value.
+  void NeedSchema(const char* schema);
   // Null if the object does not have the member.
   const nlohmann::ordered_json* Find(const std::string& name);
   // Throws if the member is missing.

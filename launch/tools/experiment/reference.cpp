@@ -67,9 +67,7 @@ void RefuseSecond(const std::vector<ReferenceResult>& results, const std::string
 Reference ParseReference(const ordered_json& object, const std::string& source,
                          const std::string& name) {
   JsonMembers members(object, source);
-  if (members.Text("schema", "") != kReferenceSchema) {
-    throw UsageError("{}: expected an object of schema '{}'", source, kReferenceSchema);
-  }
+  members.NeedSchema(kReferenceSchema);
   Reference reference{.name = name, .source = members.NeedText("source")};
   const ordered_json& list = members.Need("results");
   if (!list.is_array() || list.empty()) {
