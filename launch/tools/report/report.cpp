@@ -107,7 +107,8 @@ std::string ResultsHtml(const Comparison& comparison) {
             "failed, is counted, not dropped.</p>\n"
           : "<p class=\"note\">Return: mean over seeds, Student's interval.</p>\n";
   if (comparison.baselines) {
-    html += "<p>" + EscapeMarkup(FormatBaselines(*comparison.baselines)) + ".</p>\n";
+    html += fmt::format("<p>{} {}.</p>\n", EscapeMarkup(comparison.task),
+                        EscapeMarkup(FormatBaselines(*comparison.baselines)));
   }
   std::vector<std::string> early, failed, missing;
   for (const GroupFigures& group : comparison.groups) {
