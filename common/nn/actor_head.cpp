@@ -96,7 +96,8 @@ void ActorHead::BackwardAction(const float* action_gradient, double mean_penalty
 }
 
 void ActorHead::BackwardMlp() {
-  mlp_.Backward(output_gradient_.data(), {.parameters = true, .source = true});
+  mlp_.Backward(output_gradient_.data(),
+                {.parameters = true, .source = trunk_.NeedsInputGradient()});
   trunk_.Backward(mlp_.input_gradient());
 }
 

@@ -43,8 +43,9 @@ class CriticHeads {
   void BackwardAction(QGradients q_gradients, float* action_gradient);
 
  private:
-  // Sums dL/dinput over the Q functions into input_gradient_.
-  void BackwardMlps(QGradients q_gradients, bool parameters);
+  // Sums dL/dinput over the Q functions into input_gradient_ if wanted.source is set.
+  void BackwardMlps(QGradients q_gradients, Gradients wanted);
+  void SumInputGradient(const float* gradient, bool first);
 
   ObservationTrunk trunk_;
   std::vector<Mlp> mlps_;

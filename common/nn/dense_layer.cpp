@@ -9,51 +9,50 @@ namespace shoal::nn {
 DenseLayer::DenseLayer(const LayerContext& context, const LayerPlan& plan,
                        const dnnl::memory& source, const dnnl::memory& source_gradient,
                        Precision output_precision)
-    : linear_(context, plan.name, source, source_gradient),
+    : linear_(context, plan.name, source, source_gradient, output_precision),
       activation_(plan.activation),
-      has_norm_(plan.layer_norm),
-      output_(context.batch, linear_.outputs(), output_precision) {
+      has_norm_(plan.layer_norm) {
   CHECK(activation_ != Activation::kNone) << plan.name << ": a linear layer alone is a Linear";
   if (!has_norm_) return;
   norm_weight_ = context.parameters->Find(plan.name + ".norm.weight");
   norm_bias_ = context.parameters->Find(plan.name + ".norm.bias");
-  normalised_.resize(size_t(output_.size()));
+  normalised_.resize(size_t(output().size()));
   scales_.resize(size_t(context.batch));
 }
 
 void DenseLayer::Forward() {
   linear_.Forward();
-  const float* x = linear_.output();
-  float* y = output_.values();
+  Rows& output = linear_.output();
+  float* y = output.values();
   if (has_norm_) {
-    LayerNormForward({output_.batch(), output_.columns()}, x,
+    LayerNormForward({output.batch(), output.columns()}, y,
                      {norm_weight_.value(), norm_bias_.value()}, normalised_.data(), scales_.data(),
                      y);
-    x = y;
   }
   if (activation_ == Activation::kTanh) {
-    TanhForward(output_.size(), x, y);
+    TanhForward(output.size(), y, y);
   } else {
-    ReluForward(output_.size(), x, y);
+    ReluForward(output.size(), y, y);
   }
-  output_.Commit();
+  output.Commit();
 }
 
-void DenseLayer::Backward(const float* output_gradient, Gradients wanted) {
-  float* dx = linear_.output_gradient();
+void DenseLayer::Backward(Gradients wanted) {
+  const Rows& output = linear_.output();
+  float* gradient = linear_.output_gradient().values();
   if (activation_ == Activation::kTanh) {
-    TanhBackward(output_.size(), output_.values(), output_gradient, dx);
+    TanhBackward(output.size(), output.values(), gradient, gradient);
   } else {
-    ReluBackward(output_.size(), output_.values(), output_gradient, dx);
+    ReluBackward(output.size(), output.values(), gradient, gradient);
   }
   if (has_norm_) {
-    const RowShape shape{output_.batch(), output_.columns()};
+    const RowShape shape{output.batch(), output.columns()};
     if (wanted.parameters) {
-      LayerNormBackwardWeights(shape, dx, normalised_.data(), norm_weight_.gradient(),
+      LayerNormBackwardWeights(shape, gradient, normalised_.data(), norm_weight_.gradient(),
                                norm_bias_.gradient());
     }
-    LayerNormBackward(shape, dx, {norm_weight_.value(), norm_bias_.value()}, normalised_.data(),
-                      scales_.data(), dx);
+    LayerNormBackward(shape, gradient, {norm_weight_.value(), norm_bias_.value()},
+                      normalised_.data(), scales_.data(), gradient);
   }
   linear_.Backward(wanted);
 }

@@ -21,21 +21,23 @@ class DenseLayer {
   DenseLayer(const LayerContext& context, const LayerPlan& plan, const dnnl::memory& source,
              const dnnl::memory& source_gradient, Precision output_precision);
 
-  const Rows& output() const { return output_; }
+  const Rows& output() const { return linear_.output(); }
+  // dL/dy (B, O) f32. The caller writes it before Backward, which overwrites it.
+  Rows& output_gradient() { return linear_.output_gradient(); }
 
   void Refresh() { linear_.Refresh(); }
   void Forward();
-  // output_gradient: dL/dy (B, O).
-  void Backward(const float* output_gradient, Gradients wanted);
+  void Backward(Gradients wanted);
 
  private:
+  // Its output and its gradient are those of the whole layer: normalisation and activation work in
+  // place, because copies would cost more than the arithmetic.
   Linear linear_;
   Activation activation_;
   bool has_norm_;
   Parameter norm_weight_, norm_bias_;
   std::vector<float> normalised_;  // xhat (B, O)
   std::vector<float> scales_;      // rstd (B)
-  Rows output_;
 };
 
 }  // namespace shoal::nn

@@ -17,27 +17,26 @@ Precision PrecisionOf(const memory& source) {
 }  // namespace
 
 Linear::Linear(const LayerContext& context, const std::string& name, const memory& source,
-               const memory& source_gradient)
-    : outputs_(int(context.parameters->Find(name + ".bias").shape()[0])),
-      weight_(context.parameters->Find(name + ".weight")),
+               const memory& source_gradient, Precision output_precision)
+    : weight_(context.parameters->Find(name + ".weight")),
       bias_(context.parameters->Find(name + ".bias")),
-      output_gradient_(context.batch, outputs_, PrecisionOf(source)) {
+      output_(context.batch, int(bias_.shape()[0]), output_precision),
+      output_gradient_(context.batch, outputs(), PrecisionOf(source)) {
   const memory::dims source_dims = DimsOf(source), weight_dims = weight_.shape();
-  bias_values_ = memory(PlainF32({outputs_}), CpuEngine(), nullptr);
-  output_ = MakeMemory(PlainF32({context.batch, outputs_}));
+  bias_values_ = memory(PlainF32({outputs()}), CpuEngine(), nullptr);
   CHECK(source_dims[1] == weight_dims[1])
       << name << ": source has " << source_dims[1] << " columns";
 
   const auto forward = DescribeForward<dnnl::inner_product_forward>(
       Attributes(), dnnl::prop_kind::forward_training, AnyLayout(source_dims, TypeOf(source)),
-      AnyLayout(weight_dims, TypeOf(source)), bias_values_.get_desc(), output_.get_desc());
+      AnyLayout(weight_dims, TypeOf(source)), bias_values_.get_desc(), output_.f32().get_desc());
   forward_source_ = Relayout::Before(source, forward.src_desc(), context.scratchpad);
   forward_weight_ = LaidOutWeight(weight_, forward.weights_desc(), context.scratchpad);
   forward_ = Op(forward,
                 {{DNNL_ARG_SRC, forward_source_.memory()},
                  {DNNL_ARG_WEIGHTS, forward_weight_.memory()},
                  {DNNL_ARG_BIAS, bias_values_},
-                 {DNNL_ARG_DST, output_}},
+                 {DNNL_ARG_DST, output_.f32()}},
                 context.scratchpad);
   if (context.training) BuildBackward(context, source, source_gradient, forward);
 }

@@ -18,15 +18,17 @@ class Linear {
  public:
   // Parameters: `name`.weight (O, I) and `name`.bias (O). source: x (B, I) row-major; the products
   // are computed in the type of the source. source_gradient: memory to which Backward writes dL/dx
-  // (B, I); empty if no gradient is needed.
+  // (B, I); empty if no gradient is needed. output_precision: the type of output().compute(), which
+  // the caller of Forward commits.
   Linear(const LayerContext& context, const std::string& name, const dnnl::memory& source,
-         const dnnl::memory& source_gradient);
+         const dnnl::memory& source_gradient, Precision output_precision = Precision::kF32);
 
-  int outputs() const { return outputs_; }
-  const float* output() const { return static_cast<const float*>(output_.get_data_handle()); }
-  float* output() { return static_cast<float*>(output_.get_data_handle()); }
-  // dL/dy (B, O) f32. The caller writes it before Backward.
-  float* output_gradient() { return output_gradient_.values(); }
+  int outputs() const { return output_.columns(); }
+  // y (B, O). The caller may overwrite it after Forward: Backward does not read it.
+  const Rows& output() const { return output_; }
+  Rows& output() { return output_; }
+  // dL/dy (B, O). The caller writes it before Backward.
+  Rows& output_gradient() { return output_gradient_; }
 
   void Refresh();
   void Forward();
@@ -37,11 +39,9 @@ class Linear {
                      const dnnl::memory& source_gradient,
                      const dnnl::inner_product_forward::primitive_desc& forward);
 
-  int outputs_ = 0;
   Parameter weight_, bias_;
   dnnl::memory bias_values_;  // memory of the parameter's values
-  dnnl::memory output_;       // (B, O) f32
-  Rows output_gradient_;
+  Rows output_, output_gradient_;
   Relayout forward_source_;
   LaidOutWeight forward_weight_;
   Op forward_;

@@ -16,9 +16,7 @@ Mlp::Mlp(const LayerContext& context, const NetworkPlan& plan, const Rows& input
                                                    source_gradient->f32(),
                                                    last ? Precision::kF32 : context.precision));
     source = &hidden_.back()->output();
-    hidden_gradients_.push_back(
-        std::make_unique<Rows>(context.batch, source->columns(), Precision::kF32));
-    source_gradient = hidden_gradients_.back().get();
+    source_gradient = &hidden_.back()->output_gradient();
   }
   output_ = std::make_unique<Linear>(context, plan.layers().back().name, source->f32(),
                                      source_gradient->f32());
@@ -36,11 +34,10 @@ void Mlp::Forward() {
 
 void Mlp::Backward(const float* output_gradient, Gradients wanted) {
   const size_t size = size_t(input_gradient_.batch()) * size_t(output_->outputs());
-  std::copy_n(output_gradient, size, output_->output_gradient());
+  std::copy_n(output_gradient, size, output_->output_gradient().values());
   output_->Backward({wanted.parameters, wanted.source || !hidden_.empty()});
   for (size_t i = hidden_.size(); i-- > 0;) {
-    hidden_[i]->Backward(hidden_gradients_[i]->values(),
-                         {wanted.parameters, wanted.source || i > 0});
+    hidden_[i]->Backward({wanted.parameters, wanted.source || i > 0});
   }
 }
 

@@ -21,7 +21,7 @@ class Mlp {
   Mlp(const LayerContext& context, const NetworkPlan& plan, const Rows& input);
 
   int outputs() const { return output_->outputs(); }
-  const float* output() const { return output_->output(); }  // (B, outputs)
+  const float* output() const { return output_->output().values(); }  // (B, outputs)
   // dL/dinput, in the shape of `input`; computed by Backward if wanted.source is set.
   const float* input_gradient() const { return input_gradient_.values(); }
 
@@ -32,7 +32,6 @@ class Mlp {
 
  private:
   Rows input_gradient_;
-  std::vector<std::unique_ptr<Rows>> hidden_gradients_;  // dL/dy of hidden layer i
   std::vector<std::unique_ptr<DenseLayer>> hidden_;
   std::unique_ptr<Linear> output_;
 };

@@ -16,7 +16,6 @@ ObservationTrunk::ObservationTrunk(const LayerContext& context, const HeadPlan& 
   if (features_ == 0) return;
   CHECK(plan.trunk.layers().size() == 1);
   dense_.emplace(context, plan.trunk.layers()[0], features, features_gradient, Precision::kF32);
-  dense_gradient_.resize(size_t(context.batch) * size_t(features_));
   if (context.training) {
     readout_gradient_.emplace(context.batch, features_, Precision::kF32);
     std::fill_n(readout_gradient_->values(), readout_gradient_->size(), 0.f);
@@ -39,15 +38,14 @@ void ObservationTrunk::Forward(const float* vector) {
 
 void ObservationTrunk::Backward(const float* input_gradient) {
   if (!dense_) return;
+  float* gradient = dense_->output_gradient().values();
   for (int b = 0; b < input_.batch(); ++b) {
     std::copy_n(input_gradient + int64_t(b) * input_.columns(), features_,
-                dense_gradient_.data() + int64_t(b) * features_);
+                gradient + int64_t(b) * features_);
   }
-  for (size_t i = 0; i < dense_gradient_.size(); ++i) {
-    dense_gradient_[i] += readout_gradient_->values()[i];
-  }
+  for (int i = 0; i < readout_gradient_->size(); ++i) gradient[i] += readout_gradient_->values()[i];
   std::fill_n(readout_gradient_->values(), readout_gradient_->size(), 0.f);
-  dense_->Backward(dense_gradient_.data(), {.parameters = true, .source = true});
+  dense_->Backward({.parameters = true, .source = true});
 }
 
 }  // namespace shoal::nn

@@ -43,6 +43,8 @@ class ObservationTrunk {
   void Refresh();
   // vector: (B, V); not read if V = 0.
   void Forward(const float* vector);
+  // Whether Backward reads input_gradient: not without pixels.
+  bool NeedsInputGradient() const { return dense_.has_value(); }
   // input_gradient: dL/dinput (B, F + V + extra), summed over all readers of the input. Backward
   // adds the gradient that a readout wrote, and then sets that gradient to 0.
   void Backward(const float* input_gradient);
@@ -53,7 +55,6 @@ class ObservationTrunk {
   Rows input_;
   std::optional<Rows> readout_gradient_;  // dL/d(trunk's outputs) (B, F); 0 if no readout wrote it
   std::optional<HostFeatures> own_features_;
-  std::vector<float> dense_gradient_;  // (B, F)
 };
 
 }  // namespace shoal::nn

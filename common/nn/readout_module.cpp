@@ -27,11 +27,11 @@ class HostReadout final : public ReadoutNetwork {
   Array Forward() override {
     const ThreadScope scope(threads_);
     linear_.Forward();
-    return HostArray(std::span(linear_.output(), values_));
+    return HostArray(std::span(linear_.output().values(), values_));
   }
   void Backward(Array gradient) override {
     const ThreadScope scope(threads_);
-    std::ranges::copy(HostValues(gradient), linear_.output_gradient());
+    std::ranges::copy(HostValues(gradient), linear_.output_gradient().values());
     linear_.Backward({.parameters = true, .source = true});
   }
 

@@ -108,7 +108,8 @@ std::vector<Pairing> LearnerPairings() {
                                              {"nature", "nature", 256},
                                              {"spatial_softmax", "spatial_softmax", 128},
                                              {"spatial_softmax", "spatial_softmax", 256},
-                                             {"", "vectors alone", 128}}) {
+                                             {"", "vectors alone", 128},
+                                             {"", "vectors alone", 256}}) {
     const auto get = [agents, encoder = std::string(encoder), batch = batch]() -> TwoAgents::Of& {
       return agents->Get(encoder, batch);
     };

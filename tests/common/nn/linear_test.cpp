@@ -32,12 +32,12 @@ TEST_P(LinearTest, ForwardAndBackwardAgreeWithTheReference) {
   source.SetColumns(0, kInputs, ToFloats(x_).data());
   source.Commit();
   linear.Forward();
-  EXPECT_LT(RelativeError({linear.output(), kInputRows * kOutputs},
+  EXPECT_LT(RelativeError({linear.output().values(), kInputRows * kOutputs},
                           reference::LinearForward(kInputRows, x_, weight_, bias_)),
             Tolerance(GetParam()));
 
   const Values dy = RandomValues(kInputRows * kOutputs, 3);
-  std::copy(dy.begin(), dy.end(), linear.output_gradient());
+  std::copy(dy.begin(), dy.end(), linear.output_gradient().values());
   linear.Backward({});
   const auto exact = reference::LinearBackward(kInputRows, x_, weight_, dy);
   EXPECT_LT(RelativeError(GradientOf(parameters_, "fc.weight"), exact.weight),
@@ -54,7 +54,7 @@ TEST_P(LinearTest, BackwardComputesOnlyTheGradientsAskedFor) {
   source.SetColumns(0, kInputs, ToFloats(x_).data());
   source.Commit();
   linear.Forward();
-  std::fill_n(linear.output_gradient(), kInputRows * kOutputs, 1.f);
+  std::fill_n(linear.output_gradient().values(), kInputRows * kOutputs, 1.f);
   const auto all_zero = [](std::span<const float> values) {
     return std::all_of(values.begin(), values.end(), [](float value) { return value == 0; });
   };
@@ -78,7 +78,8 @@ TEST_P(LinearTest, UsesTheNewValuesAfterRefresh) {
   source.SetColumns(0, kInputs, ToFloats(x_).data());
   source.Commit();
   linear.Forward();
-  EXPECT_EQ(std::vector<float>(linear.output(), linear.output() + kInputRows * kOutputs),
+  EXPECT_EQ(std::vector<float>(linear.output().values(),
+                               linear.output().values() + kInputRows * kOutputs),
             std::vector<float>(kInputRows * kOutputs, 0.f));
 }
 
