@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Learning curves of SAC over wall clock, Shoal's beside Stable-Baselines3's. Prints JSON.
 
-usage: sac_learning.py SHOAL OUT [pendulum] [halfcheetah] [--only SIDE:SEED] [--seeds N] [--share F]
+usage: sac_learning.py SHOAL OUT [pendulum] [halfcheetah] [--only SIDE:SEED] [--loaded] [--seeds N]
+                       [--share F]
 
 SHOAL is the program, OUT a folder. A piece is one side ("shoal", "sb3") with one seed; its result is
 OUT/TASK-SIDE-SEED.json. Pieces whose file exists are not run again, so that an interrupted call can be
@@ -20,8 +21,10 @@ Stable-Baselines3 starts with learn(), after all imports. Neither contains an ev
 policies at fixed env steps, and when training is over the same code plays 20 episodes with each, without
 noise, from seeds that no training uses.
 
-Nothing else may run on the machine. F multiplies env steps, intervals and warm-up: 0.05 for a trial. Run
-it with an interpreter that has stable-baselines3, gymnasium[mujoco] and the wheel of shoal-rl.
+Nothing else may run on the machine. With --loaded other programs may run: the piece then has one thread
+and gives no times, only returns, which do not depend on the machine's speed. F multiplies env steps,
+intervals and warm-up: 0.05 for a trial. Run it with an interpreter that has stable-baselines3,
+gymnasium[mujoco] and the wheel of shoal-rl.
 """
 
 import argparse
@@ -265,7 +268,7 @@ def threads_of(out, name, side, rate, choices):
     return json.loads(file.read_text())["threads"]
 
 
-def run_piece(program, out, name, share, side, seed):
+def run_piece(program, out, name, share, side, seed, loaded):
     task = task_of(name, share)
     file = out / f"{name}-{side}-{seed}.json"
     if file.exists():
@@ -274,18 +277,24 @@ def run_piece(program, out, name, share, side, seed):
         return
     print(f"{name}: {side}, seed {seed}", file=sys.stderr)
     if side == "shoal":
-        threads = threads_of(out, name, side, lambda n: shoal_rate(program, task, n), (1, 2))
+        threads = 1 if loaded else threads_of(out, name, side, lambda n: shoal_rate(program, task, n),
+                                              (1, 2))
         result = train_shoal(program, task, seed, threads, returns_of_checkpoint)
     else:
-        threads = threads_of(out, name, side, lambda n: in_a_process(name, share, "rate", n), (1, 0))
+        threads = 1 if loaded else threads_of(out, name, side,
+                                              lambda n: in_a_process(name, share, "rate", n), (1, 0))
         result = in_a_process(name, share, "train", seed, threads)
+    if loaded:
+        for timed in (result, *result["points"]):
+            timed["seconds"] = None
     piece = {"side": side, "seed": seed, "task": task, **result}
     file.with_suffix(".part").write_text(json.dumps(piece, indent=2) + "\n")
     file.with_suffix(".part").rename(file)
 
 
 def seconds_to_target(piece):
-    """Training time at the first policy whose mean return reaches the target; None: there is none."""
+    """Training time at the first policy whose mean return reaches the target; None: there is none, or
+    the piece has no times."""
     target = piece["task"]["target"]
     return next((p["seconds"] for p in piece["points"] if p["return"] >= target), None)
 
@@ -315,16 +324,21 @@ def summary(out, name, share, seeds):
                "best_return": lambda piece: max(p["return"] for p in piece["points"])}
     if TASKS[name]["target"] is not None:
         figures["seconds_to_target"] = seconds_to_target
+    timed = {key for key, piece in pieces.items() if piece["seconds"] is not None}
+    row["without_times"] = [f"{side}:{seed}" for side, seed in sorted(pieces.keys() - timed)]
     for side in SIDES:
-        own = [piece for (of, _), piece in sorted(pieces.items()) if of == side]
-        row[side] = {figure: over_seeds([value(piece) for piece in own])
-                     for figure, value in figures.items()}
-    both = [seed for seed in range(seeds) if all((side, seed) in pieces for side in SIDES)]
+        row[side] = {}
+        for figure, value in figures.items():
+            own = [key for key in sorted(pieces) if key[0] == side]
+            if figure.startswith("seconds"):
+                own = [key for key in own if key in timed]
+            row[side][figure] = over_seeds([value(pieces[key]) for key in own])
+    both = [seed for seed in range(seeds) if all((side, seed) in timed for side in SIDES)]
     for figure in ("seconds", "seconds_to_target"):
         if figure not in figures:
             continue
         pairs = [[figures[figure](pieces[side, seed]) for side in SIDES] for seed in both]
-        if all(None not in pair for pair in pairs):
+        if pairs and all(None not in pair for pair in pairs):
             row[f"ratio_of_{figure}"] = over_seeds([theirs / ours for ours, theirs in pairs])
     row["pieces"] = [pieces[key] for key in sorted(pieces)]
     return row
@@ -339,6 +353,7 @@ def main():
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("tasks", nargs="*", metavar="task", help=" | ".join(TASKS))
     parser.add_argument("--only", metavar="SIDE:SEED", help="one piece")
+    parser.add_argument("--loaded", action="store_true", help="other programs run: no times")
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--share", type=float, default=1)
     arguments = parser.parse_args()
@@ -350,7 +365,8 @@ def main():
     for name in tasks:
         for piece in [arguments.only] if arguments.only else pieces:
             side, seed = piece.split(":")
-            run_piece(arguments.shoal, arguments.out, name, arguments.share, side, int(seed))
+            run_piece(arguments.shoal, arguments.out, name, arguments.share, side, int(seed),
+                      arguments.loaded)
     version = subprocess.run([arguments.shoal, "--version"], capture_output=True, text=True, check=True)
     print(json.dumps({
         "shoal": version.stdout.strip(), "cores": os.cpu_count(),
