@@ -22,9 +22,8 @@ policies at fixed env steps, and when training is over the same code plays 20 ep
 noise, from seeds that no training uses.
 
 Nothing else may run on the machine. With --loaded other programs may run: the piece then has one thread
-and gives no times, only returns, which do not depend on the machine's speed. F multiplies env steps,
-intervals and warm-up: 0.05 for a trial. Run it with an interpreter that has stable-baselines3,
-gymnasium[mujoco] and the wheel of shoal-rl.
+and gives returns but no times. F multiplies env steps, intervals and warm-up: 0.05 for a trial. Run it
+with an interpreter that has stable-baselines3, gymnasium[mujoco] and the wheel of shoal-rl.
 """
 
 import argparse
@@ -276,13 +275,15 @@ def run_piece(program, out, name, share, side, seed, loaded):
             raise SystemExit(f"{file} was made with another --share or by another version; remove it")
         return
     print(f"{name}: {side}, seed {seed}", file=sys.stderr)
+    if loaded:
+        threads = 1
+    elif side == "shoal":
+        threads = threads_of(out, name, side, lambda n: shoal_rate(program, task, n), (1, 2))
+    else:
+        threads = threads_of(out, name, side, lambda n: in_a_process(name, share, "rate", n), (1, 0))
     if side == "shoal":
-        threads = 1 if loaded else threads_of(out, name, side, lambda n: shoal_rate(program, task, n),
-                                              (1, 2))
         result = train_shoal(program, task, seed, threads, returns_of_checkpoint)
     else:
-        threads = 1 if loaded else threads_of(out, name, side,
-                                              lambda n: in_a_process(name, share, "rate", n), (1, 0))
         result = in_a_process(name, share, "train", seed, threads)
     if loaded:
         for timed in (result, *result["points"]):
