@@ -9,10 +9,11 @@
 #include <cstdint>
 #include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "common/config/algorithm_config.h"
 #include "common/config/schedule.h"
+#include "common/config/state_blocks.h"
 
 namespace shoal {
 
@@ -26,17 +27,6 @@ struct CustomCamera {
   std::string body = {};           // body whose frame the numbers use; empty = the world's frame
 
   bool operator==(const CustomCamera&) const = default;
-};
-
-// Selection of a task's blocks: all blocks, no block, or the named blocks.
-struct StateBlocks {
-  bool all = false;
-  std::vector<std::string> names{};  // the named blocks, if not `all`
-
-  StateBlocks(bool every) : all(every) {}  // NOLINT(google-explicit-constructor): true | false
-  explicit StateBlocks(std::vector<std::string> some) : names(std::move(some)) {}
-  // Whether any block is selected.
-  explicit operator bool() const { return all || !names.empty(); }
 };
 
 struct ObservationConfig {
@@ -116,55 +106,6 @@ struct LearnerConfig {
   int weights_period = 20;         // updates between broadcasts of the weights
   int request_credits = 3;         // batches that the learner requests in advance
   int checkpoint_period = 2'000;   // updates between checkpoints
-};
-
-// Entropy temperature, and privileged inputs of learning (common/config/privileged_blocks.h).
-struct SacConfig {
-  std::string temperature = "auto";  // auto | fixed
-  double initial_temperature = 0.1;
-  double min_temperature = 0;            // lower bound of an automatic temperature
-  double temperature_learning_rate = 0;  // 0 = learner.learning_rate
-  double target_entropy = 0;             // 0 = target_entropy_per_action * (action size)
-  double target_entropy_per_action = -1;
-  int critics = 2;                    // Q functions, each with a target
-  int target_critics = 0;             // targets drawn at random for each update; 0 = all
-  std::string actor_value = "min";    // min | mean: value of the critics in the actor's loss
-  StateBlocks critic_blocks = false;  // the critic's inputs in place of pixels; false = pixels
-  std::vector<std::string> aux;       // auxiliary regression targets: BLOCK, or BLOCK-BLOCK
-  double aux_weight = 1;              // weight of the auxiliary loss
-};
-
-// On-policy learning: each update uses one rollout of every environment and then discards it.
-struct PpoConfig {
-  int rollout_steps = 1024;                 // T steps of each environment in one rollout
-  int epochs = 10;                          // passes over a rollout in one update
-  Schedule clip = Schedule::Constant(0.2);  // ratios are clipped to [1 - clip, 1 + clip]
-  double value_clip = 0;                    // limit for the change of a value; 0 = no limit
-  double gae_lambda = 0.95;                 // weight of the advantages of later steps
-  double entropy_weight = 0;                // weight of the policy's entropy in the loss
-  double value_weight = 0.5;                // weight of the squared value error in the loss
-  double target_kl = 0;              // an update ends early if the KL exceeds 1.5 * this; 0 = never
-  bool normalise_advantages = true;  // normalise advantages in each minibatch
-  bool normalise_rewards = false;    // scale rewards by the running deviation of returns
-  std::string networks = "separate";  // separate | shared: networks of policy and value
-  double initial_log_std = 0;         // log deviation of the policy before the first update
-  int versions_ahead = 0;             // rollouts that begin before their weights arrive
-  double rollout_deadline = 30;       // s; how long the learner waits for late rollouts
-};
-
-// Noise on a target's action. Actions are in [-1, 1]. The defaults are the values of Fujimoto et
-// al. 2018, arXiv:1802.09477, table 3.
-struct Td3Config {
-  double target_noise = 0.2;       // standard deviation; 0 = no noise
-  double target_noise_clip = 0.5;  // largest absolute value of the noise
-};
-
-// Noise on the actions of targets, of the actor's loss and of the training actors. The defaults are
-// those of Yarats et al. 2021, arXiv:2107.09645, for easy tasks.
-struct Drqv2Config {
-  Schedule noise{.start = 1, .end = 0.1, .env_steps = 100'000};  // standard deviation
-  // Largest absolute value of the noise in targets and in the actor's loss.
-  double noise_clip = 0.3;
 };
 
 // Noise that training actors add to their policy's actions (actor/acting/exploration.h).
