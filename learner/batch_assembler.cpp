@@ -67,6 +67,12 @@ BatchAssembler::Verdict BatchAssembler::Add(const BatchPart& part) {
   return same_answer || empty ? Verdict::kTaken : Verdict::kStartedOver;
 }
 
+void BatchAssembler::StartOver(uint64_t request) {
+  Slot* slot = Find(request);
+  CHECK(slot != nullptr) << request;
+  if (!slot->whole) slot->pieces.clear();
+}
+
 std::optional<BatchAssembler::Assembled> BatchAssembler::TryGet(uint64_t request) {
   Slot* slot = Find(request);
   CHECK(slot != nullptr) << request;

@@ -7,6 +7,8 @@
 // request again or because the replay was restarted. The new answer may contain other transitions.
 // Parts of two answers are never mixed: when the first part of the new answer arrives, all parts of
 // the old answer are dropped. Two answers are distinguished by the replay's count of stored steps.
+// If this count does not determine the samples, the caller calls StartOver when it repeats a
+// request.
 //
 // At most `buffers` batches are assembled at the same time. A part of any other batch is dropped;
 // the caller counts this part.
@@ -46,6 +48,8 @@ class BatchAssembler {
   // buffer is free.
   bool Expect(uint64_t request);
   Verdict Add(const BatchPart& part);
+  // Drops the parts of a batch that is not complete.
+  void StartOver(uint64_t request);
   // Returns the batch of `request` if it is complete.
   std::optional<Assembled> TryGet(uint64_t request);
   // Frees the buffer of `request`.

@@ -10,6 +10,7 @@
 #include "common/base/error.h"
 #include "common/base/log.h"
 #include "common/config/lockstep.h"
+#include "common/config/priorities.h"
 
 namespace shoal::learner {
 namespace {
@@ -31,6 +32,7 @@ BatchSource::BatchSource(const RunConfig& run, uint64_t learner_session, uint64_
       learner_session_(learner_session),
       last_request_(LastRequest(run.config)),
       schema_(BatchSchemaOf(run)),
+      has_priorities_(HasPriorities(run.config.replay)),
       send_(std::move(send)),
       resend_after_(resend_after),
       pin_(std::move(pin)),
@@ -142,8 +144,23 @@ BatchCounters BatchSource::counters() const {
   return counters;
 }
 
-SampleRequest BatchSource::MakeRequest(uint64_t request) const {
+void BatchSource::TakeErrors(SampleErrors errors) {
+  const MutexLock lock(mutex_);
+  CHECK(errors_.empty() || errors_.back().request < errors.request) << errors.request;
+  errors_.push_back(std::move(errors));
+}
+
+SampleErrors BatchSource::ErrorsFor(uint64_t request) {
+  const uint64_t delay = static_cast<uint64_t>(run_.config.learner.request_credits) + kErrorDelay;
+  if (errors_.empty() || errors_.front().request + delay > request) return {};
+  SampleErrors errors = std::move(errors_.front());
+  errors_.pop_front();
+  return errors;
+}
+
+SampleRequest BatchSource::MakeRequest(const Outstanding& outstanding) const {
   const Config& config = run_.config;
+  const uint64_t request = outstanding.request;
   return {.spec_hash = spec_hash_,
           .learner_session = learner_session_,
           .request = request,
@@ -152,7 +169,9 @@ SampleRequest BatchSource::MakeRequest(uint64_t request) const {
           .schema_hash = schema_.Hash(),
           .released = released_,
           .takes_slots = true,
-          .refused_token = slots_.refused_token()};
+          .refused_token = slots_.refused_token(),
+          .error_ids = outstanding.errors.ids,
+          .errors = outstanding.errors.errors};
 }
 
 BatchSource::Outstanding* BatchSource::Find(uint64_t request) {
@@ -175,7 +194,8 @@ void BatchSource::Extend() {
   const auto credits = static_cast<size_t>(run_.config.learner.request_credits);
   while (outstanding_.size() < credits && next_request_ <= last_request_) {
     CHECK(assembler_.Expect(next_request_)) << "one buffer per credit and one for the caller";
-    outstanding_.push_back({.request = next_request_++});
+    outstanding_.push_back({.request = next_request_, .errors = ErrorsFor(next_request_)});
+    ++next_request_;
   }
 }
 
@@ -200,9 +220,13 @@ std::vector<SampleRequest> BatchSource::TakeDue() {
   std::vector<SampleRequest> due;
   for (Outstanding& o : outstanding_) {
     if (o.next_send > now) continue;
-    due.push_back(MakeRequest(o.request));
+    due.push_back(MakeRequest(o));
     o.next_send = now + resend_after_;
-    if (std::exchange(o.sent, true)) ++counters_.resent_requests;
+    if (!std::exchange(o.sent, true)) continue;
+    ++counters_.resent_requests;
+    // A restarted replay has lost the priorities. Its answer may have other samples, although the
+    // ring is the same.
+    if (has_priorities_) assembler_.StartOver(o.request);
   }
   return due;
 }

@@ -9,6 +9,10 @@
 // cannot be used, this is logged, and every further request refuses the memory; the replay then
 // sends parts.
 //
+// Request r brings the errors of batch r - request_credits - kErrorDelay, if samples have
+// priorities. These errors are known when the request is made, although updates may be in flight. A
+// request therefore has the same errors in each run of a lockstep learner.
+//
 // Threads: receive threads call OnPart and OnSlot; one other thread calls the other functions.
 // `send` is called without a lock held. Memory: request_credits + 1 batches; the pages are used
 // only if parts arrive.
@@ -46,23 +50,29 @@ class BatchSource final : public BatchStream {
   void OnSlot(const BatchSlot& slot);
 
   std::optional<Batch> Next(SteadyTime deadline) override;
+  void TakeErrors(SampleErrors errors) override;
   BatchCounters counters() const override;
 
   static constexpr std::chrono::milliseconds kResendAfter{2'000};
+  // More updates than an engine has in flight.
+  static constexpr uint64_t kErrorDelay = 3;
 
  private:
   struct Outstanding {
     uint64_t request = 0;
     bool sent = false;       // whether the request was sent at least once
     SteadyTime next_send{};  // time of the next sending; max() if the batch is complete
+    SampleErrors errors{};   // that the request brings
   };
 
-  SampleRequest MakeRequest(uint64_t request) const SHOAL_REQUIRES(mutex_);
+  SampleRequest MakeRequest(const Outstanding& outstanding) const SHOAL_REQUIRES(mutex_);
   Outstanding* Find(uint64_t request) SHOAL_REQUIRES(mutex_);
   bool Whole(uint64_t request) SHOAL_REQUIRES(mutex_);
   // Adds requests while credits and buffers are available, and sends the requests that are due.
   void SendDue() SHOAL_EXCLUDES(mutex_);
   void Extend() SHOAL_REQUIRES(mutex_);
+  // The errors that request `request` brings; empty if there are none.
+  SampleErrors ErrorsFor(uint64_t request) SHOAL_REQUIRES(mutex_);
   std::vector<SampleRequest> TakeDue() SHOAL_REQUIRES(mutex_);
   void TryAgain(const std::vector<uint64_t>& unsent) SHOAL_REQUIRES(mutex_);
   std::optional<Batch> TakeFirst() SHOAL_REQUIRES(mutex_);
@@ -82,6 +92,7 @@ class BatchSource final : public BatchStream {
   const uint64_t learner_session_;
   const uint64_t last_request_;
   const BatchSchema schema_;
+  const bool has_priorities_;
   const Send send_;
   const std::chrono::milliseconds resend_after_;
   const PinMemory pin_;
@@ -92,6 +103,7 @@ class BatchSource final : public BatchStream {
   // By the address of an assembled batch.
   std::map<const uint8_t*, std::shared_ptr<const void>> pinned_ SHOAL_GUARDED_BY(mutex_);
   SlotBatches slots_ SHOAL_GUARDED_BY(mutex_);
+  std::deque<SampleErrors> errors_ SHOAL_GUARDED_BY(mutex_);  // for later requests, oldest first
   std::deque<Outstanding> outstanding_ SHOAL_GUARDED_BY(mutex_);  // ascending request ids
   uint64_t next_request_ SHOAL_GUARDED_BY(mutex_);
   // Request whose batch the caller uses; 0 = no batch.

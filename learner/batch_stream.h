@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "common/base/clock.h"
 #include "common/wire/batch_schema.h"
@@ -18,6 +19,13 @@ struct Batch {
   // Records that were stored over the whole run when the batch was drawn; the steps are in `view`.
   uint64_t stored_records = 0;
   uint64_t unsampleable_steps = 0;  // see BatchPart; 0 on policy
+};
+
+// Errors of the values of a batch's samples, at least 0. An id may occur twice.
+struct SampleErrors {
+  uint64_t request = 0;  // of the batch
+  std::vector<uint64_t> ids{};
+  std::vector<float> errors{};
 };
 
 // Counters of pending requests, of faults so far, and of repeated requests.
@@ -56,6 +64,8 @@ class BatchStream {
   // spec.
   virtual std::optional<Batch> Next(SteadyTime deadline) = 0;
   virtual BatchCounters counters() const = 0;
+  // Prioritised sampling: takes the errors of an earlier batch, in the order of requests.
+  virtual void TakeErrors(SampleErrors /*errors*/) {}
   // Sets the current number of the run's actors. Some streams depend on this number.
   virtual void SetActors(int /*actors*/) {}
 };

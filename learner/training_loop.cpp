@@ -11,6 +11,7 @@
 #include "common/config/live_values.h"
 #include "common/config/lockstep.h"
 #include "common/config/on_policy.h"
+#include "common/config/priorities.h"
 #include "common/wire/scoped_seconds.h"
 
 namespace shoal::learner {
@@ -31,6 +32,8 @@ TrainingLoop::TrainingLoop(const Parts& parts, const std::optional<CheckpointSta
                    parts.sink),
       report_(parts.name, parts.run),
       on_policy_(LearnsOnPolicy(config_)),
+      has_priorities_(HasPriorities(config_.replay)),
+      sample_errors_(config_.replay.copies),
       finite_updates_(parts_.agent.updates()),
       threads_(parts.threads),
       threads_asked_(parts.threads),
@@ -80,7 +83,7 @@ bool TrainingLoop::TryTrain() {
     FinishUpdates();  // the report of an idle learner lacks no update
     return false;
   }
-  const std::vector<UpdateOutcome> outcomes = Submit(batch->view);
+  const std::vector<UpdateOutcome> outcomes = Submit(*batch);
   report_.OnBatch(*batch, parts_.agent.updates());
   OnOutcomes(outcomes);
   AfterUpdate(*batch);
@@ -88,10 +91,11 @@ bool TrainingLoop::TryTrain() {
   return true;
 }
 
-std::vector<UpdateOutcome> TrainingLoop::Submit(const BatchView& batch) {
+std::vector<UpdateOutcome> TrainingLoop::Submit(const Batch& batch) {
+  if (has_priorities_) sample_errors_.OnBatch(batch);
   SteadyTime since = Now();
   updating_ = true;
-  std::vector<UpdateOutcome> outcomes = parts_.agent.Submit(batch, [&](UpdateStage stage) {
+  std::vector<UpdateOutcome> outcomes = parts_.agent.Submit(batch.view, [&](UpdateStage stage) {
     const SteadyTime now = Now();
     seconds_.update[static_cast<size_t>(stage)] +=
         std::chrono::duration<double>(now - std::exchange(since, now)).count();
@@ -117,6 +121,7 @@ void TrainingLoop::OnOutcomes(const std::vector<UpdateOutcome>& outcomes) {
     }
     parts_.update_page.SetDone(++finite_updates_);
     report_.OnUpdate(outcome.figures);
+    if (has_priorities_) parts_.batches.TakeErrors(sample_errors_.TakeOldest(outcome.errors));
   }
 }
 

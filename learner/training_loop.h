@@ -33,6 +33,7 @@
 #include "learner/learner_report.h"
 #include "learner/learner_sink.h"
 #include "learner/pending_evaluations.h"
+#include "learner/sample_errors.h"
 #include "learner/weights_sender.h"
 
 namespace shoal::learner {
@@ -81,7 +82,7 @@ class TrainingLoop {
   // Waits briefly for a batch and trains with it. Returns false if none came.
   bool TryTrain();
   // Submits the batch to the agent and measures the time of the update's stages.
-  std::vector<UpdateOutcome> Submit(const BatchView& batch);
+  std::vector<UpdateOutcome> Submit(const Batch& batch);
   // Waits for the updates in flight, and sends weights that were copied. Call it before anything
   // leaves the agent: weights for which actors wait, checkpoints, the state of a resized agent.
   // Throws Error if an update is not finite.
@@ -125,7 +126,8 @@ class TrainingLoop {
   EvaluationPoints evaluations_;
   LearnerReport report_;
   LearnerSeconds seconds_;
-  const bool on_policy_;
+  const bool on_policy_, has_priorities_;
+  SampleErrorCollector sample_errors_;     // unused without priorities
   uint64_t finite_updates_;                // updates that are known to be finite
   int threads_, threads_asked_;            // current number; number of the last request
   uint64_t budget_;                        // current budget, env steps

@@ -10,10 +10,15 @@ namespace shoal {
 namespace {
 
 constexpr AlgorithmKind kKinds[] = {
-    {.name = "sac", .squashed_gaussian = true, .encoder_options = true, .own_section = "sac."},
-    {.name = "td3", .own_section = "td3."},
-    {.name = "ddpg"},
+    {.name = "sac",
+     .squashed_gaussian = true,
+     .encoder_options = true,
+     .priorities = true,
+     .own_section = "sac."},
+    {.name = "td3", .priorities = true, .own_section = "td3."},
+    {.name = "ddpg", .priorities = true},
     {.name = "drqv2",
+     .priorities = true,
      .own_section = "drqv2.",
      .own_noise = [](const Config& config) -> const Schedule& { return config.drqv2.noise; }},
     {.name = "ppo", .on_policy = true, .own_section = "ppo."},

@@ -24,6 +24,8 @@ struct AlgorithmKind {
   // the algorithm is off policy, the policy is deterministic.
   bool squashed_gaussian = false;
   bool encoder_options = false;  // accepts network.encoders and network.target_encoder
+  // Accepts replay.priorities: its critics' loss has weights and returns errors.
+  bool priorities = false;
   // Section of keys that only algorithms with this section accept: "ppo."; empty = no section.
   std::string_view own_section = "";
   // The algorithm's own deviation of the actors' noise, its key "noise"; null = exploration.sigma.

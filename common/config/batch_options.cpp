@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "common/config/priorities.h"
 #include "common/config/privileged_blocks.h"
 
 namespace shoal {
@@ -15,6 +16,7 @@ BatchOptions BatchOptionsOf(const RunConfig& run) {
           .critic_shifts = run.config.replay.critic_shifts,
           .n_step = run.config.replay.n_step,
           .discount = run.config.learner.discount,
+          .probabilities = HasPriorities(run.config.replay),
           .privileged = std::move(privileged)};
 }
 

@@ -66,20 +66,24 @@ struct ReplayConfig {
   int64_t min_size = 1'000;    // sampleable transitions before the first batch
   // Batch elements sampled per sampleable transition, over the run's env steps; 0 = no limit.
   Schedule samples_per_insert = Schedule::Constant(64);
-  double band = 0;                 // width of the limiter's band in samples; 0 = computed
-  std::string storage = "file";    // file | memory
-  bool keep = false;               // keep the file after the run has finished
-  int shift_pad = 4;               // DrQ shift in pixels; 0 = no shift
-  int copies = 1;                  // batch elements per drawn transition, each shifted anew
-  int target_shifts = 0;           // number of copies with an own shift of the next frame; 0 = all
-  int critic_shifts = 0;           // number of copies with an own shift of the frame; 0 = all
-  int n_step = 1;                  // steps whose rewards are summed before the next value
-  std::string hindsight = "none";  // none | future | final | episode: source of hindsight goals
-  int hindsight_goals = 4;         // N; a share N / (N + 1) of the samples is relabelled
-  double movement_share = 0;       // share of samples drawn by remaining motion of achieved goals
-  std::string movement = "path";   // path | displacement: measure of the remaining motion
-  int window_chunks = 4;           // most unacknowledged chunks of an actor
-  int threads = 0;                 // threads that copy a batch's frames; 0 = chosen from the load
+  double band = 0;                  // width of the limiter's band in samples; 0 = computed
+  std::string storage = "file";     // file | memory
+  bool keep = false;                // keep the file after the run has finished
+  int shift_pad = 4;                // DrQ shift in pixels; 0 = no shift
+  int copies = 1;                   // batch elements per drawn transition, each shifted anew
+  int target_shifts = 0;            // number of copies with an own shift of the next frame; 0 = all
+  int critic_shifts = 0;            // number of copies with an own shift of the frame; 0 = all
+  int n_step = 1;                   // steps whose rewards are summed before the next value
+  std::string hindsight = "none";   // none | future | final | episode: source of hindsight goals
+  int hindsight_goals = 4;          // N; a share N / (N + 1) of the samples is relabelled
+  double movement_share = 0;        // share of samples drawn by remaining motion of achieved goals
+  std::string movement = "path";    // path | displacement: measure of the remaining motion
+  std::string priorities = "none";  // none | proportional | lap: how samples are prioritised
+  double priority_exponent = 0.6;   // power of a sample's priority in its probability
+  // proportional: power of the importance weights, over the run's env steps; 0 = no weights.
+  Schedule priority_correction = Schedule::Constant(0.4);
+  int window_chunks = 4;  // most unacknowledged chunks of an actor
+  int threads = 0;        // threads that copy a batch's frames; 0 = chosen from the load
 };
 
 struct LearnerConfig {

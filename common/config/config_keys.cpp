@@ -153,6 +153,16 @@ std::vector<Key> ReplayKeys() {
                 "movement for replay.movement_share: path = sum of the distances of all steps to "
                 "the episode's end; displacement = distance between the achieved goal before the "
                 "step and at the episode's end"),
+      SHOAL_KEY(
+          replay.priorities, (Choices{{"none", "proportional", "lap"}}),
+          "prioritised sampling by the critics' errors: proportional, with importance weights "
+          "in the critic's loss; or lap, with a Huber loss; none = samples have no priorities"),
+      SHOAL_KEY(replay.priority_exponent, (RealRange{0, 1}),
+                "power of a sample's priority in its probability; 0 = uniform; with lap, its paper "
+                "uses 0.4"),
+      SHOAL_KEY(replay.priority_correction, (RealRange{0, 1}),
+                "power of the importance weights with replay.priorities = proportional; a number "
+                "(0 = no weights, 1 = full correction), or a schedule over the run's env steps"),
       SHOAL_KEY(replay.window_chunks, (IntegerRange{2, 1024}),
                 "chunks an actor may have unacknowledged"),
       SHOAL_KEY(replay.threads, (IntegerRange{0, 1024}),

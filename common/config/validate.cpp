@@ -222,6 +222,36 @@ void ValidateSamplesPerInsert(const Schedule& samples) {
       ScheduleText(samples));
 }
 
+// Checks the keys of prioritised sampling.
+void ValidatePriorities(const Config& config) {
+  const ReplayConfig &replay = config.replay, usual;
+  const bool corrects = replay.priority_correction != usual.priority_correction;
+  if (replay.priorities == "none") {
+    if (replay.priority_exponent == usual.priority_exponent && !corrects) return;
+    throw UsageError("{} without replay.priorities: expected it unset, or proportional{}",
+                     corrects ? "replay.priority_correction" : "replay.priority_exponent",
+                     corrects ? "" : " | lap");
+  }
+  if (!AlgorithmKindOf(config).priorities) {
+    throw UsageError(
+        "replay.priorities = {}: learner.algorithm = {} returns no errors of samples; expected "
+        "none, or learner.algorithm = {}",
+        replay.priorities, config.learner.algorithm,
+        AlgorithmsThat([](const auto& kind) { return kind.priorities; }));
+  }
+  if (replay.priorities == "lap" && corrects) {
+    throw UsageError(
+        "replay.priority_correction with replay.priorities = lap, which has no importance weights: "
+        "expected it unset");
+  }
+  if (replay.movement_share > 0) {
+    throw UsageError(
+        "replay.movement_share = {} with replay.priorities = {}: samples are drawn by one of them; "
+        "expected 0, or replay.priorities = none",
+        replay.movement_share, replay.priorities);
+  }
+}
+
 void ValidateReplay(const Config& config) {
   ValidateSamplesPerInsert(config.replay.samples_per_insert);
   if (config.replay.min_size > config.replay.capacity / 2) {
@@ -244,6 +274,7 @@ void ValidateReplay(const Config& config) {
     throw UsageError("replay.movement = {} with replay.movement_share = 0: expected it unset",
                      config.replay.movement);
   }
+  ValidatePriorities(config);
 }
 
 }  // namespace

@@ -64,10 +64,12 @@ class CdrReader {
     return strings;
   }
 
-  std::vector<double> ReadDoubles() {
+  template <class T>
+  std::vector<T> ReadNumbers() {
     const auto count = Read<uint32_t>();
-    const std::span<const uint8_t> bytes = Take(size_t{count} * sizeof(double), sizeof(double));
-    std::vector<double> values(bytes.size() / sizeof(double));
+    if (count == 0) return {};
+    const std::span<const uint8_t> bytes = Take(size_t{count} * sizeof(T), sizeof(T));
+    std::vector<T> values(bytes.size() / sizeof(T));
     if (!bytes.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
     return values;
   }

@@ -44,7 +44,11 @@ bool ParseCdr(std::span<const uint8_t> cdr, CreditsMessage* message) {
 
 bool ParseCdr(std::span<const uint8_t> cdr, SampleRequest* message) {
   return ReadMessage(cdr, message) && message->learner_session > 0 && message->request > 0 &&
-         message->batch > 0 && message->released < message->request;
+         message->batch > 0 && message->released < message->request &&
+         message->errors.size() == message->error_ids.size() &&
+         message->errors.size() <= message->batch &&
+         std::ranges::all_of(message->errors,
+                             [](float error) { return std::isfinite(error) && error >= 0; });
 }
 
 bool ParseCdr(std::span<const uint8_t> cdr, BatchSlot* message) {

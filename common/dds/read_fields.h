@@ -35,7 +35,9 @@ class FieldReader {
   void Read(std::string& text) { text = OneLine(reader_->ReadString()); }
   void Read(const LongText<std::string>& field) { field.text = reader_->ReadString(); }
   void Read(std::span<const uint8_t>& bytes) { bytes = reader_->ReadBytes(); }
-  void Read(std::vector<double>& values) { values = reader_->ReadDoubles(); }
+  template <class T>
+  requires std::is_arithmetic_v<T>
+  void Read(std::vector<T>& values) { values = reader_->ReadNumbers<T>(); }
   void Read(std::vector<std::string>& texts) {
     texts = reader_->ReadStrings();
     for (std::string& text : texts) text = OneLine(text);

@@ -98,8 +98,9 @@ class FieldWriter {
   WireSequence<uint8_t> Borrow(std::span<const uint8_t> bytes) {
     return {const_cast<uint8_t*>(bytes.data()), bytes.size()};
   }
-  WireSequence<double> Borrow(const std::vector<double>& values) {
-    return {const_cast<double*>(values.data()), values.size()};
+  template <class T>
+  requires std::is_arithmetic_v<T> WireSequence<T> Borrow(const std::vector<T>& values) {
+    return {const_cast<T*>(values.data()), values.size()};
   }
   WireSequence<char*> Borrow(const std::vector<std::string>& strings) {
     std::vector<char*>& pointers = buffers_->strings;

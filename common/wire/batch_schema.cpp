@@ -65,6 +65,7 @@ BatchSchema::BatchSchema(const ObservationSpec& spec, const BatchOptions& option
   Add("bootstrap", ArrayType::kF32);
   Add("weights_update", ArrayType::kU64);
   Add("id", ArrayType::kU64);
+  if (options.probabilities) Add("probability", ArrayType::kF32);
   if (!options.rollout) return;
   Add("drawn_action", ArrayType::kF32, {spec.action_size});
   Add("log_prob", ArrayType::kF32);

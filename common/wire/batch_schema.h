@@ -16,6 +16,8 @@
 //                                        the task ended; discount^(m-1) for a sample of m steps
 //   weights_update   (B) u64             update of the policy that chose the action, for policy lag
 //   id               (B) u64             id of the sample's first record
+//   probability      (B) f32             probability of the sample in one draw; only with
+//                                        BatchOptions::probabilities
 //
 // Arrays of a rollout (on policy). The rows are the steps of one environment in order, then the
 // steps of the next environment. Frames are not shifted, and next_obs_* are filled in only if
@@ -32,9 +34,8 @@
 // the first dimension of all arrays. If the spec or the options have no pixels, no vectors or no
 // privileged blocks, the batch has no array for them.
 //
-// A new algorithm or sampler may need more arrays, such as importance weights or sequences (the
-// length of a sequence is the first dimension of an element). In this case, add an option and its
-// arrays.
+// A new algorithm or sampler may need more arrays, such as sequences (the length of a sequence is
+// the first dimension of an element). In this case, add an option and its arrays.
 #pragma once
 
 #include <cstddef>
@@ -61,13 +62,14 @@ struct BatchArray {
 // Options that, together with the spec, define the arrays of a batch and the meaning of their
 // numbers.
 struct BatchOptions {
-  int batch = 1;          // B
-  int copies = 1;         // consecutive elements made from one transition
-  int target_shifts = 0;  // number of copies with their own shift of next_obs; 0 = all
-  int critic_shifts = 0;  // number of copies with their own shift of obs; 0 = all
-  int n_step = 1;         // n
-  double discount = 1;    // discount between the n summed steps
-  bool rollout = false;   // rows are steps in order, with the arrays of a rollout
+  int batch = 1;               // B
+  int copies = 1;              // consecutive elements made from one transition
+  int target_shifts = 0;       // number of copies with their own shift of next_obs; 0 = all
+  int critic_shifts = 0;       // number of copies with their own shift of obs; 0 = all
+  int n_step = 1;              // n
+  double discount = 1;         // discount between the n summed steps
+  bool rollout = false;        // rows are steps in order, with the arrays of a rollout
+  bool probabilities = false;  // with the probabilities of the samples
   // Privileged inputs: names of blocks that the policy does not observe, in any order.
   std::vector<std::string> privileged{};
 };
@@ -116,6 +118,7 @@ struct BatchView {
   std::span<float> obs_vector, next_obs_vector, action, reward, bootstrap;
   std::span<float> obs_privileged, next_obs_privileged;
   std::span<uint64_t> weights_update, id;
+  std::span<float> probability;
   std::span<float> drawn_action, log_prob, ends, continues;  // rollouts only
   uint64_t stored_steps = 0;  // the run's env steps when the batch was drawn, for schedules
 
@@ -148,6 +151,7 @@ void VisitArrays(View& view, Visit visit) {
   visit("bootstrap", view.bootstrap);
   visit("weights_update", view.weights_update);
   visit("id", view.id);
+  visit("probability", view.probability);
   visit("drawn_action", view.drawn_action);
   visit("log_prob", view.log_prob);
   visit("ends", view.ends);

@@ -55,7 +55,7 @@ auto FieldsOf(M& m) {
 template <FieldsAsIn<SampleRequest> M>
 auto FieldsOf(M& m) {
   return std::tie(m.spec_hash, m.learner_session, m.request, m.after_steps, m.batch, m.schema_hash,
-                  m.released, m.takes_slots, m.refused_token);
+                  m.released, m.takes_slots, m.refused_token, m.error_ids, m.errors);
 }
 
 template <FieldsAsIn<BatchSlot> M>

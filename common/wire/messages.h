@@ -74,6 +74,11 @@ struct SampleRequest {
   bool takes_slots = false;
   // SlotAddress::token[0] of slots that the learner cannot open; 0 = no such slots.
   uint64_t refused_token = 0;
+  // Prioritised sampling: samples of an earlier batch and the errors of their values, >= 0, which
+  // the replay uses from this request on. The two lists have the same length, at most the number of
+  // a batch's samples (docs/decisions/0034-priorities-travel-with-requests.md).
+  std::vector<uint64_t> error_ids{};
+  std::vector<float> errors{};
 };
 
 // replay -> learner: part of one batch in the layout of common/wire/batch_schema.h.

@@ -38,6 +38,8 @@ struct UpdateOutcome {
   // False if the batch, a loss or a gradient is not finite. The agent then is as it was before the
   // update; updates that were in flight behind it had no effect and have no outcome.
   bool finite = true;
+  // Errors max_i |Q_i - y| (B) of the batch's rows; empty without prioritised sampling.
+  std::vector<float> errors{};
 };
 
 // One thread.

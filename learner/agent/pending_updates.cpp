@@ -2,6 +2,7 @@
 #include "learner/agent/pending_updates.h"
 
 #include <optional>
+#include <span>
 #include <utility>
 
 namespace shoal::learner {
@@ -21,8 +22,10 @@ std::vector<UpdateOutcome> PendingUpdates::Finish() {
 }
 
 UpdateOutcome PendingUpdates::Take(const Engine::Outcome& outcome) {
+  const std::span<const float> errors = engine_->ReadErrors();
   UpdateOutcome update{.figures = sheets_.front().Read(*engine_, outcome),
-                       .finite = outcome.finite};
+                       .finite = outcome.finite,
+                       .errors = {errors.begin(), errors.end()}};
   if (outcome.finite) {
     sheets_.pop_front();
   } else {

@@ -64,13 +64,18 @@ DeviceEngine::DeviceEngine(Device* device, nn::Precision precision, int batch, i
   for (int i = 0; i < 2; ++i) landings_.push_back(std::make_unique<Landing>(device));
   for (int i = 0; i <= in_flight; ++i) {
     slots_.push_back(
-        {static_cast<Results*>(device->AllocateHost(sizeof(Results))), device->NewEvent()});
+        {static_cast<Results*>(device->AllocateHost(sizeof(Results))),
+         static_cast<float*>(device->AllocateHost(int64_t{batch} * int64_t(sizeof(float)))),
+         /*has_errors=*/false, device->NewEvent()});
   }
 }
 
 DeviceEngine::~DeviceEngine() {
   Quietly([&] { device_->Finish(); });  // recordings are not destroyed while they run
-  for (const Slot& slot : slots_) Quietly([&] { device_->FreeHost(slot.results); });
+  for (const Slot& slot : slots_) {
+    Quietly([&] { device_->FreeHost(slot.results); });
+    Quietly([&] { device_->FreeHost(slot.errors); });
+  }
 }
 
 // ---- Memory and numbers ----
@@ -153,6 +158,7 @@ void DeviceEngine::Begin(const BatchView& drawn) {
   workspace_.BeginList(kernels::BeginUpdate{});
   updating_ = true;
   stepped_.clear();
+  returns_errors_ = false;
   SetHostNumbers();
 }
 
@@ -180,6 +186,11 @@ Transitions DeviceEngine::Take(const BatchView& batch) {
           .bootstrap = places.Of(batch.bootstrap),
           .drawn_action = places.Of(batch.drawn_action),
           .log_prob = places.Of(batch.log_prob)};
+}
+
+Array DeviceEngine::TakeRows(std::span<float> values) {
+  CHECK(updating_ && int(values.size()) == rows()) << values.size();
+  return DeviceArray(landing().Add(std::span<const float>(values)), int64_t(values.size()));
 }
 
 kernels::BeginUpdate DeviceEngine::FirstCommand() const {
@@ -218,6 +229,11 @@ void DeviceEngine::Submit() {
   flying_.push_back(slot);
   const auto bytes = int64_t(offsetof(Results, numbers) + numbers_ * sizeof(double));
   device_->CopyOut(Lane::kCommands, results_, bytes, slots_[slot].results);
+  slots_[slot].has_errors = returns_errors_;
+  if (returns_errors_) {
+    device_->CopyOut(Lane::kCommands, errors_, int64_t{rows()} * int64_t(sizeof(float)),
+                     slots_[slot].errors);
+  }
   device_->Mark(Lane::kCommands, slots_[slot].arrived.get());
 }
 
@@ -240,6 +256,7 @@ Engine::Outcome DeviceEngine::TakeOutcome() {
   flying_.pop_front();
   device_->Wait(*slot.arrived);
   read_ = *slot.results;
+  read_errors_.assign(slot.errors, slot.errors + (slot.has_errors ? rows() : 0));
   const kernels::Flags flags = read_.flags;
   if (flags.finite == 0) {
     // The updates behind this one had no effect. They end before the halt does.

@@ -44,9 +44,11 @@ class DeviceEngine final : public Engine {
 
   void Begin(const BatchView& drawn) override;
   Transitions Take(const BatchView& batch) override;
+  Array TakeRows(std::span<float> values) override;
   std::optional<Outcome> End() override;
   Outcome WaitOutcome() override;
   double Read(Number number) const override;
+  std::span<const float> ReadErrors() const override { return read_errors_; }
   std::vector<float> ReadRows(Array array) const override;
   std::function<std::vector<double>()> CopyMoments(Moments moments) const override;
   void SetMoments(Moments moments, std::span<const double> values) override;
@@ -72,8 +74,8 @@ class DeviceEngine final : public Engine {
 
   void Targets(const TargetTerms& terms, Array y) override;
   void AverageCopies(int copies, int shifts, Array y) override;
-  void CriticLoss(std::span<const Array> q, Array y, std::span<const Array> q_gradients,
-                  const CriticNumbers& figures) override;
+  void CriticLoss(std::span<const Array> q, Array y, const CriticRows& rows,
+                  std::span<const Array> q_gradients, const CriticNumbers& figures) override;
   void EntropyActorLoss(Array log_prob, std::span<const Array> q, ActorValue value,
                         Number temperature, std::span<const Array> q_gradients,
                         Number loss) override;
@@ -115,6 +117,8 @@ class DeviceEngine final : public Engine {
   // The results of an update in flight, in host memory.
   struct Slot {
     Results* results;
+    float* errors;  // (B)
+    bool has_errors;
     std::unique_ptr<Event> arrived;
   };
 
@@ -164,9 +168,12 @@ class DeviceEngine final : public Engine {
   std::vector<nn::Adam*> stepped_;         // in this update
 
   std::vector<Slot> slots_;
-  std::deque<size_t> flying_;  // slots of the updates in flight, oldest first
-  Results read_;               // of the outcome that was returned last
-  int32_t* const counter_;     // of kernels, one after another
+  std::deque<size_t> flying_;       // slots of the updates in flight, oldest first
+  Results read_;                    // of the outcome that was returned last
+  float* errors_ = nullptr;         // (B), of a critic's loss, in the device's memory
+  bool returns_errors_ = false;     // in this update
+  std::vector<float> read_errors_;  // of the outcome that was returned last
+  int32_t* const counter_;          // of kernels, one after another
   std::map<int, ClippedPolicyMemory> clipped_policies_;  // by the number of actions
 };
 

@@ -211,8 +211,8 @@ void DeviceEngine::AverageCopies(int copies, int shifts, Array y) {
                                         .y = AddressOf(y)});
 }
 
-void DeviceEngine::CriticLoss(std::span<const Array> q, Array y, std::span<const Array> q_gradients,
-                              const CriticNumbers& figures) {
+void DeviceEngine::CriticLoss(std::span<const Array> q, Array y, const CriticRows& of_rows,
+                              std::span<const Array> q_gradients, const CriticNumbers& figures) {
   CHECK(q.size() == q_gradients.size()) << q.size();
   kernels::CriticLoss loss;
   loss.rows = rows();
@@ -220,6 +220,13 @@ void DeviceEngine::CriticLoss(std::span<const Array> q, Array y, std::span<const
   SetAddresses(q, loss.q);
   SetAddresses(q_gradients, loss.q_gradient);
   loss.y = AddressOf(y);
+  loss.weights = AddressOf(of_rows.weights);
+  loss.huber = of_rows.huber;
+  if (of_rows.returns_errors) {
+    if (errors_ == nullptr) errors_ = workspace_.New<float>(rows());
+    loss.errors = errors_;
+    returns_errors_ = true;
+  }
   loss.figures = FiguresOf(figures);
   workspace_.Add(loss);
 }

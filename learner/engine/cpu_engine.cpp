@@ -78,6 +78,13 @@ void CpuEngine::Begin(const BatchView& drawn) {
   taken_.clear();
   means_.clear();
   critic_arrays_.clear();
+  errors_.clear();
+}
+
+Array CpuEngine::TakeRows(std::span<float> values) {
+  CHECK(updating_ && values.size() == size_t(batch_)) << values.size();
+  const nn::Replica::Rows rows = replica_->RowsOf(batch_);
+  return HostArray(values.subspan(size_t(rows.begin), size_t(rows.count)));
 }
 
 Transitions CpuEngine::Take(const BatchView& batch) {
@@ -218,23 +225,33 @@ void CpuEngine::AverageCopies(int copies, int shifts, Array y) {
   learner::AverageCopies(modules_.batch, copies, shifts, Data(y));
 }
 
-void CpuEngine::CriticLoss(std::span<const Array> q, Array y, std::span<const Array> q_gradients,
-                           const CriticNumbers& figures) {
+void CpuEngine::CriticLoss(std::span<const Array> q, Array y, const CriticRows& rows,
+                           std::span<const Array> q_gradients, const CriticNumbers& figures) {
   CHECK(critic_arrays_.empty() && q.size() == q_gradients.size()) << q.size();
   for (size_t i = 0; i < q.size(); ++i) {
-    CriticLossBackward(modules_.batch, Data(q[i]), Data(y), Data(q_gradients[i]));
+    CriticLossBackward(modules_.batch, Data(q[i]), Data(y), Data(q_gradients[i]),
+                       {Data(rows.weights), rows.huber});
     critic_arrays_.push_back(HostValues(q[i]));
   }
   critic_arrays_.push_back(HostValues(y));
+  if (rows.weights) critic_arrays_.push_back(HostValues(rows.weights));
+  critic_rows_ = rows;
   critic_figures_ = figures;
 }
 
 void CpuEngine::FinishCriticLoss(const std::vector<std::vector<float>>& whole) {
-  const std::vector<float>& y = whole.back();
+  const size_t critics = whole.size() - (critic_rows_.weights ? 2 : 1);
+  const std::vector<float>& y = whole[critics];
   std::vector<const float*> q;
-  for (size_t i = 0; i + 1 < whole.size(); ++i) q.push_back(whole[i].data());
+  for (size_t i = 0; i < critics; ++i) q.push_back(whole[i].data());
   const CriticNumbers& to = critic_figures_;
-  const learner::CriticLoss loss = CriticLossForward(int(y.size()), q, y.data());
+  const learner::CriticLoss loss =
+      CriticLossForward(int(y.size()), q, y.data(),
+                        {critic_rows_.weights ? whole.back().data() : nullptr, critic_rows_.huber});
+  if (critic_rows_.returns_errors) {
+    errors_.resize(y.size());
+    CriticErrors(int(y.size()), q, y.data(), errors_.data());
+  }
   Cell(to.loss) = loss.loss;
   Cell(to.q_mean) = loss.q_mean;
   Cell(to.target_mean) = loss.target_mean;

@@ -35,9 +35,11 @@ class CpuEngine final : public Engine {
 
   void Begin(const BatchView& drawn) override;
   Transitions Take(const BatchView& batch) override;
+  Array TakeRows(std::span<float> values) override;
   std::optional<Outcome> End() override;
   Outcome WaitOutcome() override;
   double Read(Number number) const override;
+  std::span<const float> ReadErrors() const override { return errors_; }
   std::vector<float> ReadRows(Array array) const override;
   std::function<std::vector<double>()> CopyMoments(Moments moments) const override;
   void SetMoments(Moments moments, std::span<const double> values) override;
@@ -63,8 +65,8 @@ class CpuEngine final : public Engine {
 
   void Targets(const TargetTerms& terms, Array y) override;
   void AverageCopies(int copies, int shifts, Array y) override;
-  void CriticLoss(std::span<const Array> q, Array y, std::span<const Array> q_gradients,
-                  const CriticNumbers& figures) override;
+  void CriticLoss(std::span<const Array> q, Array y, const CriticRows& rows,
+                  std::span<const Array> q_gradients, const CriticNumbers& figures) override;
   void EntropyActorLoss(Array log_prob, std::span<const Array> q, ActorValue value,
                         Number temperature, std::span<const Array> q_gradients,
                         Number loss) override;
@@ -128,8 +130,12 @@ class CpuEngine final : public Engine {
 
   // Since the last Gather.
   std::vector<OwnMean> means_;
-  std::vector<std::span<const float>> critic_arrays_;  // q_i and y of a critic's loss; empty: none
+  // q_i and y of a critic's loss, then the weights, if there are any; empty: no loss.
+  std::vector<std::span<const float>> critic_arrays_;
+  CriticRows critic_rows_;
   CriticNumbers critic_figures_;
+
+  std::vector<float> errors_;  // (B), of the update's critic
 
   std::vector<float> noise_;  // (b, A)
 };

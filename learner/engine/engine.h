@@ -80,6 +80,9 @@ class Engine {
     bool batch_finite = true;  // false: all results of this update are useless
     bool held = false;         // HoldSteps has disabled the steps
   };
+  // Returns this replica's rows of `values` (B), which the host has computed for this update. They
+  // are borrowed until End.
+  virtual Array TakeRows(std::span<float> values) = 0;
   // Ends the update. If the flag is cleared, parameters, moments and statistics are the same as
   // before Begin. Returns the outcome of the oldest update in flight, or nullopt if the engine lets
   // more updates be in flight first. An engine that waits for each update returns its outcome.
@@ -95,6 +98,10 @@ class Engine {
   // Reads a number as it was at the end of the update whose outcome was returned last. Not within
   // an update.
   virtual double Read(Number number) const = 0;
+  // The errors max_i |q_i - y| (B) of the critic's loss, for all rows of the batch, in the update
+  // whose outcome was returned last. Empty unless CriticRows::returns_errors was set. Valid until
+  // the next outcome. Not within an update.
+  virtual std::span<const float> ReadErrors() const = 0;
   // Waits for all updates in flight, and reads this replica's rows. Not within an update.
   virtual std::vector<float> ReadRows(Array array) const = 0;
   // Begins a copy of moments as the updates so far leave them, without waiting for updates in
@@ -153,10 +160,10 @@ class Engine {
   // Eq. 15: replaces each group of `copies` consecutive targets by the mean of its first `shifts`
   // targets; 0 = of all.
   virtual void AverageCopies(int copies, int shifts, Array y) = 0;
-  // Eq. 6: L = sum_i mean_b (q_i - y)^2. Computes dL/dq_i (b); the figures are available after the
-  // next Gather.
-  virtual void CriticLoss(std::span<const Array> q, Array y, std::span<const Array> q_gradients,
-                          const CriticNumbers& figures) = 0;
+  // Eq. 6: L = sum_i mean_b (q_i - y)^2, changed by `rows` as in Eq. 34. Computes dL/dq_i (b); the
+  // figures are available after the next Gather.
+  virtual void CriticLoss(std::span<const Array> q, Array y, const CriticRows& rows,
+                          std::span<const Array> q_gradients, const CriticNumbers& figures) = 0;
   // Eq. 7 and 30: L = mean_b (temperature log pi - v), v = min_i q_i or mean_i q_i. Computes
   // dL/dq_i (b); L is available after the next Gather.
   virtual void EntropyActorLoss(Array log_prob, std::span<const Array> q, ActorValue value,

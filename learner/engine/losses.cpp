@@ -29,6 +29,11 @@ double MeanAt(std::span<const float* const> q, int b) {
   return sum / double(q.size());
 }
 
+double Huber(double error) {
+  const double size = std::abs(error);
+  return size <= 1 ? error * error : 2 * size - 1;
+}
+
 }  // namespace
 
 void TdTargets(int batch, const TargetInputs& inputs, const TargetRates& rates, float* y) {
@@ -48,16 +53,17 @@ void AverageCopies(int batch, int copies, int shifts, float* y) {
   }
 }
 
-CriticLoss CriticLossForward(int batch, std::span<const float* const> q, const float* y) {
+CriticLoss CriticLossForward(int batch, std::span<const float* const> q, const float* y,
+                             const RowLoss& rows) {
   double loss = 0, q_sum = 0, y_sum = 0;
   for (int b = 0; b < batch; ++b) {
     double squares = 0, values = 0;
     for (const float* values_of_one : q) {
       const double error = double(values_of_one[b]) - y[b];
-      squares += error * error;
+      squares += rows.huber ? Huber(error) : error * error;
       values += values_of_one[b];
     }
-    loss += squares;
+    loss += rows.weights != nullptr ? rows.weights[b] * squares : squares;
     q_sum += values;
     y_sum += y[b];
   }
@@ -73,8 +79,22 @@ Summary Summarise(std::span<const float> values) {
   return {mean, std::sqrt(squares / double(values.size())), least, most};
 }
 
-void CriticLossBackward(int batch, const float* q, const float* y, float* q_gradient) {
-  for (int b = 0; b < batch; ++b) q_gradient[b] = 2 * (q[b] - y[b]) / float(batch);
+void CriticLossBackward(int batch, const float* q, const float* y, float* q_gradient,
+                        const RowLoss& rows) {
+  for (int b = 0; b < batch; ++b) {
+    float error = q[b] - y[b];
+    if (rows.huber) error = std::clamp(error, -1.f, 1.f);
+    q_gradient[b] = 2 * error / float(batch);
+    if (rows.weights != nullptr) q_gradient[b] *= rows.weights[b];
+  }
+}
+
+void CriticErrors(int batch, std::span<const float* const> q, const float* y, float* errors) {
+  for (int b = 0; b < batch; ++b) {
+    errors[b] = std::abs(q[0][b] - y[b]);
+    for (const float* values : q.subspan(1))
+      errors[b] = std::max(errors[b], std::abs(values[b] - y[b]));
+  }
 }
 
 float ActorLossForward(int batch, const float* log_prob, std::span<const float* const> q,

@@ -39,11 +39,21 @@ void TdTargets(int batch, const TargetInputs& inputs, const TargetRates& rates, 
 void AverageCopies(int batch, int copies, int shifts, float* y);
 
 // Eq. 6:  L = sum_i mean_b (q_i - y)^2;   dL/dq_i = 2 (q_i - y) / B
+// Eq. 34: the squares are multiplied by weights, or replaced by Huber's function of the errors e:
+//   h(e) = e^2 if |e| <= 1, else 2 |e| - 1;   dh/de = 2 clip(e, -1, 1)
+struct RowLoss {
+  const float* weights = nullptr;  // null: 1
+  bool huber = false;
+};
 struct CriticLoss {
   float loss, q_mean, target_mean;  // q_mean over all critics
 };
-CriticLoss CriticLossForward(int batch, std::span<const float* const> q, const float* y);
-void CriticLossBackward(int batch, const float* q, const float* y, float* q_gradient);
+CriticLoss CriticLossForward(int batch, std::span<const float* const> q, const float* y,
+                             const RowLoss& rows = {});
+void CriticLossBackward(int batch, const float* q, const float* y, float* q_gradient,
+                        const RowLoss& rows = {});
+// max_i |q_i - y| (B).
+void CriticErrors(int batch, std::span<const float* const> q, const float* y, float* errors);
 
 // Mean, standard deviation, smallest and largest of an array that is not empty.
 struct Summary {

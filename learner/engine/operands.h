@@ -43,6 +43,13 @@ struct TargetTerms {
   ValueBounds bounds;
 };
 
+// How a critic's loss counts the rows of a batch (Eq. 34).
+struct CriticRows {
+  Array weights;                // (b) importance weights; empty: 1
+  bool huber = false;           // errors beyond 1 count by their absolute values
+  bool returns_errors = false;  // Engine::ReadErrors
+};
+
 // Figures of a critic's loss over the whole batch. q2 is empty if there is one Q function.
 struct CriticNumbers {
   Number loss, q_mean, target_mean;

@@ -187,6 +187,7 @@ FrameCopies BatchGather::GatherAllButFrames(const BatchPlan& plan, const BatchVi
     out.bootstrap[b] = returns.bootstrap;
     out.weights_update[b] = RecordLayout::Header(first).weights_update;
     out.id[b] = element.id;
+    if (!out.probability.empty()) out.probability[b] = static_cast<float>(element.probability);
   }
   return copies;
 }

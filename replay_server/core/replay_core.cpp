@@ -7,6 +7,7 @@
 #include "common/base/error.h"
 #include "common/base/random.h"
 #include "common/config/batch_options.h"
+#include "common/config/priorities.h"
 #include "common/config/sending_window.h"
 #include "common/run_folder/run_file_names.h"
 
@@ -109,6 +110,7 @@ ReplayCore::ReplayCore(const RunConfig& run, const std::filesystem::path& folder
       limiter_(OptionsOfLimiter(run)),
       credits_(sessions_, spec_hash_, replay_session, WindowRecords(run), LeastRecords(run)),
       requests_(spec_hash_, batch_schema_.Hash(), run.config.learner.request_credits),
+      has_priorities_(HasPriorities(run.config.replay)),
       budget_(static_cast<uint64_t>(run.config.env_steps)) {
   index_.SetSelector(policies_.selector.get());
   limiter_.SetSessions(static_cast<int>(sessions_.newest().size()));
@@ -160,10 +162,8 @@ std::optional<BegunBatch> ReplayCore::BeginAnswer(uint8_t* data) {
   const bool repeated = requests_.Answered(*request);
   // A repeated request was granted when it was answered first.
   if (!repeated && !limiter_.MaySample(index_.sampleable())) return std::nullopt;
-  Random random(StreamKey(static_cast<uint64_t>(run_.config.seed), StreamRole::kReplaySampler,
-                          request->request));
-  std::optional<BatchPlan> plan = DrawPlan(PlanOptionsOf(run_.config), policies_.selector.get(),
-                                           policies_.relabeller.get(), &random);
+  if (!repeated) TakeErrors(*request);
+  std::optional<BatchPlan> plan = PlanOf(*request);
   if (!plan) return std::nullopt;
   const BatchView view = batch_schema_.View(data);
   FrameCopies copies = gather_.GatherAllButFrames(*plan, view);
@@ -180,6 +180,33 @@ std::optional<BegunBatch> ReplayCore::BeginAnswer(uint8_t* data) {
   }
   return BegunBatch{{*request, ring_.last_id(), ring_.stored_steps(), index_.unsampleable()},
                     std::move(copies)};
+}
+
+void ReplayCore::TakeErrors(const SampleRequest& request) {
+  for (size_t i = 0; i < request.errors.size(); ++i) {
+    const bool set = policies_.selector->SetError(request.error_ids[i], request.errors[i]);
+    ++(set ? counters_.priorities_set : counters_.priorities_ignored);
+  }
+}
+
+std::optional<BatchPlan> ReplayCore::PlanOf(const SampleRequest& request) {
+  if (has_priorities_) {
+    plans_.OnRequest(request);
+    const BatchPlan* drawn = plans_.Find(request.request);
+    if (drawn != nullptr && Stored(*drawn)) return *drawn;
+  }
+  Random random(StreamKey(static_cast<uint64_t>(run_.config.seed), StreamRole::kReplaySampler,
+                          request.request));
+  std::optional<BatchPlan> plan = DrawPlan(PlanOptionsOf(run_.config), policies_.selector.get(),
+                                           policies_.relabeller.get(), &random);
+  if (plan && has_priorities_) plans_.Keep(request.request, *plan);
+  return plan;
+}
+
+bool ReplayCore::Stored(const BatchPlan& plan) const {
+  return std::ranges::all_of(plan.elements, [this](const BatchPlan::Element& element) {
+    return index_.Sampleable(element.id) && (element.goal == 0 || ring_.Holds(element.goal));
+  });
 }
 
 std::optional<SampleRequest> ReplayCore::NextRepeated() const {

@@ -11,6 +11,7 @@
 //   rate limiter     ratio of samples to inserts: whether actors or the learner must wait
 //   credit book      credits of the actors
 //   request queue    requests of the learner
+//   drawn plans      with priorities: samples of the batches that the learner may request again
 #pragma once
 
 #include <cstdint>
@@ -27,6 +28,7 @@
 #include "common/wire/batch_schema.h"
 #include "common/wire/messages.h"
 #include "replay_server/core/batch_gather.h"
+#include "replay_server/core/drawn_plans.h"
 #include "replay_server/core/episode_index.h"
 #include "replay_server/core/intake.h"
 #include "replay_server/core/rate_limiter.h"
@@ -66,6 +68,8 @@ struct CoreCounters {
   uint64_t refused_requests = 0;  // requests with a wrong spec or a wrong schema
   uint64_t surplus_requests = 0;  // requests beyond the learner's credits
   uint64_t stale_requests = 0;    // requests of a learner session that has been replaced
+  // Errors of requests that set the priority of a sample, and those whose sample had gone.
+  uint64_t priorities_set = 0, priorities_ignored = 0;
 };
 
 class ReplayCore {
@@ -140,6 +144,12 @@ class ReplayCore {
   uint64_t budget() const { return budget_; }
 
  private:
+  // Sets the priorities that a request brings.
+  void TakeErrors(const SampleRequest& request);
+  // Draws the samples of a batch, or returns those of the request's first answer.
+  std::optional<BatchPlan> PlanOf(const SampleRequest& request);
+  // Whether all records of the plan are still stored.
+  bool Stored(const BatchPlan& plan) const;
   // Remaining env steps of the budget; empty if there is no limit.
   std::optional<uint64_t> StepsLeft() const;
 
@@ -156,6 +166,8 @@ class ReplayCore {
   RateLimiter limiter_;
   CreditBook credits_;
   RequestQueue requests_;
+  const bool has_priorities_;
+  DrawnPlans plans_;  // empty without priorities
   CoreCounters counters_;
   BatchPlan last_plan_;
   uint64_t budget_;  // env steps

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 
+#include "common/config/priorities.h"
 #include "common/config/privileged_blocks.h"
 #include "replay_server/core/hindsight.h"
 #include "replay_server/core/movement_selector.h"
+#include "replay_server/core/priority_selector.h"
 #include "replay_server/core/uniform_selector.h"
 
 namespace shoal::replay {
@@ -22,13 +24,21 @@ MovementKind MovementOf(const std::string& kind) {
   return kind == "displacement" ? MovementKind::kDisplacement : MovementKind::kPath;
 }
 
+std::unique_ptr<Selector> MakeSelector(const ReplayConfig& config, const Ring& ring,
+                                       const EpisodeIndex& index) {
+  if (!HasPriorities(config)) return std::make_unique<UniformSelector>(ring, index);
+  const auto kind = config.priorities == "lap" ? PriorityKind::kLap : PriorityKind::kProportional;
+  return std::make_unique<PrioritySelector>(ring, index,
+                                            PriorityScale(kind, config.priority_exponent));
+}
+
 }  // namespace
 
 ReplayPolicies MakePolicies(const RunConfig& run, const Ring& ring, const EpisodeIndex& index) {
   CheckHindsight(run);
   const ReplayConfig& config = run.config.replay;
   ReplayPolicies policies;
-  policies.selector = std::make_unique<UniformSelector>(ring, index);
+  policies.selector = MakeSelector(config, ring, index);
   if (!Hindsight(run.config)) return policies;
   policies.relabeller = std::make_unique<HindsightRelabeller>(ring, index, GoalOf(config.hindsight),
                                                               config.hindsight_goals);

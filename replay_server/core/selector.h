@@ -28,9 +28,14 @@ class Selector {
   virtual void Added(uint64_t id) = 0;
   virtual void Removed(uint64_t id) = 0;
 
-  // Draws a sample; empty if no sample was found. After the same calls of Added and Removed, the
-  // result depends only on `random`.
+  // Draws a sample; empty if no sample was found. After the same calls of Added, Removed and
+  // SetError, the result depends only on `random`.
   virtual std::optional<Selection> Draw(Random* random) = 0;
+  // Sets the priority of a sample from the error of its value, which is finite and at least 0.
+  // Returns false if the sample is not available, or if the selector has no priorities.
+  virtual bool SetError(uint64_t /*id*/, float /*error*/) { return false; }
+  // The largest priority so far; 0 without priorities.
+  virtual double largest_priority() const { return 0; }
   // Number of repeated draws since construction.
   virtual uint64_t redraws() const = 0;
 };

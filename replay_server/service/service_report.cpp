@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "common/config/priorities.h"
+
 namespace shoal::replay {
 
 const MetricsMessage& ServiceReport::Make(const std::string& state, const ServiceSeconds& seconds,
@@ -44,6 +46,10 @@ void ServiceReport::AddSamples() {
   report_.AddRate("samples_per_second", static_cast<double>(sampled));
   add_part("relabelled", "relabelled_share", counters.relabelled);
   add_part("zero_rewards", "zero_reward_share", counters.zero_rewards);
+  if (!HasPriorities(core_.run().config.replay)) return;
+  Add("priorities_set", counters.priorities_set);
+  Add("priorities_ignored", counters.priorities_ignored);
+  report_.Add("largest_priority", core_.selector().largest_priority());
 }
 
 void ServiceReport::AddTroubles() {

@@ -63,6 +63,7 @@ void Use(const SampleRequest& message) {
   ours.spec_hash = run.spec.Hash();
   ours.schema_hash = core.batch_schema().Hash();
   core.TakeRequest(ours);
+  CHECK(ours.errors.size() == ours.error_ids.size());
 }
 
 // The message names this process, whose open memory has no slots.

@@ -15,11 +15,14 @@ struct Outcome {
   std::string learner, evaluations;
 };
 
-Outcome RunInLockstep(const std::string& seed) {
+Outcome RunInLockstep(const std::string& seed, const std::string& priorities = "none") {
   const TrainingRun run;
-  const ProgramResult result =
-      run.Train({{"env_steps", "1200"}, {"eval.interval", "600"}, {"actors", "1"}, {"seed", seed}},
-                {"--lockstep"});
+  const ProgramResult result = run.Train({{"env_steps", "1200"},
+                                          {"eval.interval", "600"},
+                                          {"actors", "1"},
+                                          {"seed", seed},
+                                          {"replay.priorities", priorities}},
+                                         {"--lockstep"});
   EXPECT_EQ(ExitCode(result), 0) << result.out << result.err;
   Outcome outcome;
   outcome.learner = NewestLearnerState(run);
@@ -128,6 +131,15 @@ TEST(Lockstep, TheSameSeedGivesTheSameBytes) {
   EXPECT_TRUE(first.learner == again.learner) << "learner.safetensors differs";
   EXPECT_EQ(first.evaluations, again.evaluations);
   EXPECT_FALSE(first.learner == other.learner) << "the seed has no effect";
+}
+
+TEST(Lockstep, PrioritiesRepeatBitForBit) {
+  for (const char* kind : {"proportional", "lap"}) {
+    const Outcome first = RunInLockstep("5", kind), again = RunInLockstep("5", kind);
+    EXPECT_FALSE(first.learner.empty());
+    EXPECT_TRUE(first.learner == again.learner) << "learner.safetensors differs";
+    EXPECT_FALSE(first.learner == RunInLockstep("5").learner) << kind << " has no effect";
+  }
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ constexpr char kList[] = "learner/agent/algorithms.cpp";
 const std::set<std::string> kMayName = {
     kList, "common/config/algorithm_kind.cpp",
     // The schema: sections of keys with defaults and descriptions.
-    "common/config/config.h", "common/config/config_keys.cpp",
+    "common/config/algorithm_config.h", "common/config/config.h", "common/config/config_keys.cpp",
     // The algorithm of old checkpoints, which do not name it.
     "common/checkpoint/checkpoint_files.h"};
 

@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/base/random.h"
@@ -37,6 +38,10 @@ class PlayedBatches final : public BatchStream {
     }
     for (float& value : view.bootstrap) value = 1;
     for (uint64_t& update : view.weights_update) update = 0;
+    for (size_t row = 0; row < view.id.size(); ++row) view.id[row] = 1000 * next_ + row;
+    for (size_t row = 0; row < view.probability.size(); ++row) {
+      view.probability[row] = 0.01f * static_cast<float>(row + 1);
+    }
     if (next_ == poisoned_request) view.reward[0] = std::numeric_limits<float>::quiet_NaN();
     const uint64_t steps = stored_steps(next_);
     view.stored_steps = steps;
@@ -46,12 +51,16 @@ class PlayedBatches final : public BatchStream {
                  .unsampleable_steps = unsampleable_steps};
   }
   BatchCounters counters() const override { return {}; }
+  void TakeErrors(SampleErrors errors) override {
+    if (taken != nullptr) taken->push_back(std::move(errors));
+  }
   uint64_t given() const { return next_ - 1; }
 
   std::function<void(uint64_t request)> before;
   uint64_t last_request = std::numeric_limits<uint64_t>::max();
   uint64_t poisoned_request = 0;
   uint64_t unsampleable_steps = 0;
+  std::vector<SampleErrors>* taken = nullptr;  // null: not kept
   std::function<uint64_t(uint64_t request)> stored_steps = [](uint64_t r) { return 10 * r; };
 
  private:

@@ -58,10 +58,11 @@ std::vector<Blueprint> MakeBlueprints() {
                           "replay.samples_per_insert=4"}) {
     file.emplace_back(set);
   }
-  // The actors do, and overwrite the oldest records.
+  // The actors do, and overwrite the oldest records. Samples have priorities.
   std::vector<std::string> memory = off_policy;
-  for (const char* set : {"env_steps=1000", "eval.interval=250", "replay.capacity=250",
-                          "replay.samples_per_insert=1", "replay.storage=memory"}) {
+  for (const char* set :
+       {"env_steps=1000", "eval.interval=250", "replay.capacity=250", "replay.samples_per_insert=1",
+        "replay.storage=memory", "replay.priorities=proportional"}) {
     memory.emplace_back(set);
   }
   blueprints.push_back(Make(file));

@@ -48,6 +48,12 @@ class HashAgent final : public learner::Agent {
     hash_ = HashWords({hash_, before});
     ++updates_;
     learner::UpdateOutcome outcome;
+    for (const float probability : batch.probability) {
+      if (!(probability > 0 && probability <= 1)) {
+        story_.Violate(fmt::format("update {}: a sample of probability {}", updates_, probability));
+      }
+      outcome.errors.push_back(static_cast<float>(HashWords({hash_, outcome.errors.size()}) % 5));
+    }
     outcome.figures.Set(learner::kCriticLoss, 1.0 + static_cast<double>(hash_ % 1000) * 1e-3);
     return {outcome};
   }

@@ -152,7 +152,7 @@ class AveragedDdpgAgent final : public Agent {
     if (encoder_) encoder_->Forward(batch.obs_frames, nn::Statistics::kBatch);
     critic_.ForwardObservation(batch.obs_vector);
     critic_.ForwardAction(batch.action);
-    engine_->CriticLoss(Values(critic_), targets_, q_gradients_, critic_numbers_);
+    engine_->CriticLoss(Values(critic_), targets_, /*rows=*/{}, q_gradients_, critic_numbers_);
     engine_->OnHost(Values(critic_), std::array{spreads_}, ComputeSpreads);
     engine_->Mean(spreads_, spread_);
     critic_.Backward(q_gradients_);

@@ -56,7 +56,8 @@ class DeterministicAgent final : public Agent {
   // Adds noise to an action, if there is noise.
   Array WithNoise(Array action, Random* random);
   void ComputeTargets(const Transitions& batch, Random* random);
-  void UpdateCritic(const Transitions& batch, const OnStageEnd& on_stage_end);
+  void UpdateCritic(const Transitions& batch, const CriticRows& rows,
+                    const OnStageEnd& on_stage_end);
   void UpdateActor(const Transitions& batch, Random* random, const OnStageEnd& on_stage_end);
   void MoveTargetsAndAverage();
   // The modules that the critic's step changes.
@@ -75,6 +76,7 @@ class DeterministicAgent final : public Agent {
   PolicyAverage average_;
   nn::Adam critic_optimiser_, actor_optimiser_;
   VectorStandard standard_;
+  CriticRowsMaker critic_rows_;
   uint64_t updates_ = 0;
   AgentState state_;
 
@@ -116,6 +118,7 @@ DeterministicAgent::DeterministicAgent(const Config& config, const ObservationSp
                         engine->modules()),
       actor_optimiser_({&actor_.parameters()}, ActorStep(config.learner), engine->modules()),
       standard_(config.learner, engine, spec.VectorSize()),
+      critic_rows_(config.replay, engine),
       noisy_action_(engine->NewArray(spec.action_size)),
       targets_(engine->NewArray(1)),
       actors_q_gradients_(size_t(options.critics)),
@@ -185,12 +188,13 @@ void DeterministicAgent::ComputeTargets(const Transitions& batch, Random* random
   engine_->AverageCopies(config_.replay.copies, config_.replay.target_shifts, targets_);
 }
 
-void DeterministicAgent::UpdateCritic(const Transitions& batch, const OnStageEnd& on_stage_end) {
+void DeterministicAgent::UpdateCritic(const Transitions& batch, const CriticRows& rows,
+                                      const OnStageEnd& on_stage_end) {
   Encode(batch.obs_frames, nn::Statistics::kBatch);
   critic_.ForwardObservation(batch.obs_vector);
   critic_.ForwardAction(batch.action);
   on_stage_end(UpdateStage::kForward);
-  engine_->CriticLoss(critic_.values(), targets_, q_gradients_, critic_numbers_);
+  engine_->CriticLoss(critic_.values(), targets_, rows, q_gradients_, critic_numbers_);
   critic_.Backward(q_gradients_);
   if (encoder_) encoder_->Backward();
   engine_->Gather(&critic_optimiser_, critic_squares_);
@@ -248,7 +252,7 @@ std::vector<UpdateOutcome> DeterministicAgent::Submit(const BatchView& drawn,
   engine_->SetRateFactor(rate_factor_, &actor_optimiser_);
   ComputeTargets(batch, &random);
   on_stage_end(UpdateStage::kForward);
-  UpdateCritic(batch, on_stage_end);
+  UpdateCritic(batch, critic_rows_.Of(drawn, &figures_), on_stage_end);
   if (Due(config_.learner.actor_period)) UpdateActor(batch, &random, on_stage_end);
   MoveTargetsAndAverage();
   figures_.SetValue(kLearningRate, CriticStep(config_.learner).rate * rate_factor);

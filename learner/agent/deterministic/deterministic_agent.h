@@ -27,6 +27,7 @@
 #include "common/config/config.h"
 #include "common/spec/observation_spec.h"
 #include "learner/agent/agent.h"
+#include "learner/agent/critic_rows.h"
 #include "learner/agent/sample_figures.h"
 #include "learner/engine/engine.h"
 
@@ -44,12 +45,14 @@ struct DeterministicOptions {
 };
 
 // Metrics of an update, in the order of its report. The actor's metrics exist only if the update
-// trains the actor. The last two metrics exist only if there is a second critic.
+// trains the actor, kImportanceWeight only if there are such weights. The last two metrics exist
+// only if there is a second critic.
 inline constexpr const Figure* kTwinFigures[] = {
     &kCriticLoss, &kQMean,         &kTargetMean,       &kCriticGradNorm,
     &kActorLoss,  &kActorGradNorm, &kActionSaturation, &kLearningRate,
     &kQ1Mean,     &kQ1Std,         &kQMinMean,         &kQMinStd,
-    &kQMinMin,    &kQMinMax,       &kQ2Mean,           &kQ2Std};
+    &kQMinMin,    &kQMinMax,       &kImportanceWeight, &kQ2Mean,
+    &kQ2Std};
 inline constexpr std::span<const Figure* const> kSingleCriticFigures =
     std::span(kTwinFigures).first(std::size(kTwinFigures) - 2);
 

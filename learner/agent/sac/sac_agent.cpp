@@ -91,6 +91,7 @@ class SacAgent final : public Agent {
     Transitions drawn;
     Transitions batch;
     CriticVectors::Vectors of_critic;
+    CriticRows rows;
   };
   // Whether the coming update is one of every `period` updates.
   bool Due(int period) const { return updates_ % uint64_t(period) == 0; }
@@ -106,6 +107,7 @@ class SacAgent final : public Agent {
   SacNetworks networks_;
   VectorStandard standard_;
   CriticVectors critic_vectors_;
+  CriticRowsMaker critic_rows_;
   uint64_t updates_ = 0;
   AgentState state_;
 
@@ -131,6 +133,7 @@ SacAgent::SacAgent(const Config& config, const ObservationSpec& spec, Engine* en
       networks_(config, spec, engine),
       standard_(config.learner, engine, spec.VectorSize(), PrivilegedSize(config, spec)),
       critic_vectors_(config, spec, engine),
+      critic_rows_(config.replay, engine),
       sample_{engine->NewArray(spec.action_size), engine->NewArray(spec.action_size),
               engine->NewArray(1)},
       targets_(engine->NewArray(1)),
@@ -181,7 +184,7 @@ void SacAgent::UpdateCritic(const Seen& seen, const OnStageEnd& on_stage_end) {
   networks_.Encode(seen.batch.obs_frames);
   const auto q = networks_.ForwardCritic(seen.of_critic.obs, seen.batch.action);
   on_stage_end(UpdateStage::kForward);
-  engine_->CriticLoss(q, targets_, q_gradients_, critic_numbers_);
+  engine_->CriticLoss(q, targets_, seen.rows, q_gradients_, critic_numbers_);
   if (networks_.Aux(SacNetworks::Head::kCritic)) ForwardBackwardAux(seen);
   networks_.BackwardCritic(q_gradients_, critic_squares_);
   engine_->RequireFinite(critic_numbers_.loss);
@@ -229,7 +232,7 @@ std::vector<UpdateOutcome> SacAgent::Submit(const BatchView& drawn,
   engine_->Set(rate_factor_, rate_factor);
   engine_->Begin(drawn);
   const Transitions as_drawn = engine_->Take(drawn), batch = standard_.Seen(as_drawn);
-  const Seen seen{as_drawn, batch, critic_vectors_.Of(batch)};
+  const Seen seen{as_drawn, batch, critic_vectors_.Of(batch), critic_rows_.Of(drawn, &figures_)};
   Random random(StreamKey(uint64_t(config_.seed), StreamRole::kLearnerUpdate, updates_));
   networks_.SetRateFactor(rate_factor_);
   networks_.ReadTemperature(temperature_);

@@ -98,7 +98,8 @@ struct CriticFigures {
   bool operator==(const CriticFigures&) const = default;
 };
 
-// Eq. 6: L = sum_i mean_b (q_i - y)^2, dL/dq_i = 2 (q_i - y) / B, and the figures.
+// Eq. 6: L = sum_i mean_b (q_i - y)^2, dL/dq_i = 2 (q_i - y) / B, and the figures. Eq. 34: the
+// squares are multiplied by weights, or replaced by Huber's function.
 struct CriticLoss {
   static constexpr int kThreads = 256;
   struct Shared {
@@ -110,7 +111,10 @@ struct CriticLoss {
   int rows = 0, critics = 0;
   const float* q[kMostCritics] = {};
   const float* y = nullptr;
+  const float* weights = nullptr;  // null: 1
+  bool huber = false;
   float* q_gradient[kMostCritics] = {};
+  float* errors = nullptr;  // max_i |q_i - y|; null: not wanted
   CriticFigures figures = {};
 
   int blocks() const { return 1; }
@@ -143,17 +147,30 @@ struct CriticLoss {
 
   SHOAL_KERNEL static double Square(double x) { return x * x; }
 
+  SHOAL_KERNEL double LossOf(double error) const {
+    const double size = std::abs(error);
+    return huber && size > 1 ? 2 * size - 1 : error * error;
+  }
+
   // Gradients, and the sums of one thread.
   SHOAL_KERNEL void Accumulate(int thread, Shared& shared) const {
     auto sums = Sums<6>::Zero();
     Extremes extremes{INFINITY, -INFINITY};
     ForAll<kThreads>(thread, rows, [&](int64_t b) {
+      const float weight = weights != nullptr ? weights[b] : 1.f;
+      float largest = 0;
       for (int i = 0; i < critics; ++i) {
-        const float value = q[i][b];
-        q_gradient[i][b] = 2 * (value - y[b]) / float(rows);
-        sums[kLoss] += Square(double(value) - y[b]);
+        const float value = q[i][b], error = value - y[b];
+        q_gradient[i][b] = 2 * (huber ? Clamp(error, -1.f, 1.f) : error) / float(rows) * weight;
+        if (weights == nullptr && !huber) {
+          sums[kLoss] += Square(double(value) - y[b]);
+        } else {
+          sums[kLoss] += double(weight) * LossOf(double(value) - y[b]);
+        }
         sums[kAll] += value;
+        largest = Most(largest, std::abs(error));
       }
+      if (errors != nullptr) errors[b] = largest;
       const float least = LeastOf(q, critics, b);
       sums[kTarget] += y[b];
       sums[kFirst] += q[0][b];

@@ -237,6 +237,7 @@ TEST(Validate, RefusesWhatOnPolicyLearningHasNoUseForByName) {
       {{"replay.samples_per_insert=8"}, "expected it unset (64.0), or learner.algorithm = sac"},
       {{"replay.samples_per_insert=linear(64,8,1000)"},
        "replay.samples_per_insert = \"linear(64,8,1000)\": learner.algorithm = ppo learns from"},
+      {{"replay.priorities=lap"}, "replay.priorities = \"lap\""},
       {{"exploration.random_steps=10"}, "exploration.random_steps = 10"},
       {{"learner.tau=0.5"}, "learner.tau = 0.5"},
       {{"learner.weights_period=3"}, "learner.weights_period = 3"},

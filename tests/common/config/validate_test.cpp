@@ -192,6 +192,42 @@ TEST(Validate, KeysOfWhatIsOffAreRefused) {
             "");
 }
 
+TEST(Validate, SamplesHaveOneKindOfPriorityAndTheKeysOfThatKind) {
+  EXPECT_EQ(Refusal([](Config* c) { c->replay.priority_exponent = 0.4; }),
+            "replay.priority_exponent without replay.priorities: expected it unset, or "
+            "proportional | lap");
+  EXPECT_EQ(Refusal([](Config* c) {
+              c->replay.priority_correction = Schedule{0.4, 1, 100};
+            }),
+            "replay.priority_correction without replay.priorities: expected it unset, or "
+            "proportional");
+  for (const char* algorithm : {"sac", "td3", "ddpg"}) {
+    for (const char* kind : {"proportional", "lap"}) {
+      const auto refusal = [&](const std::function<void(Config*)>& change) {
+        return Refusal([&](Config* config) {
+          config->learner.algorithm = algorithm;
+          config->learner.batch = 12;
+          config->replay.copies = 2;
+          config->replay.n_step = 3;
+          config->replay.hindsight = "future";
+          config->replay.priorities = kind;
+          config->replay.priority_exponent = 0.4;
+          change(config);
+        });
+      };
+      EXPECT_EQ(refusal([](Config*) {}), "") << algorithm << " " << kind;
+      EXPECT_EQ(refusal([](Config* c) { c->replay.movement_share = 0.5; }),
+                std::string("replay.movement_share = 0.5 with replay.priorities = ") + kind +
+                    ": samples are drawn by one of them; expected 0, or replay.priorities = none");
+      EXPECT_EQ(refusal([](Config* c) { c->replay.priority_correction = Schedule::Constant(1); }),
+                kind == std::string("lap")
+                    ? "replay.priority_correction with replay.priorities = lap, which has no "
+                      "importance weights: expected it unset"
+                    : "");
+    }
+  }
+}
+
 TEST(Validate, FurtherEncodersAreOfSacFromPixels) {
   const auto separate = [](Config* c) {
     c->observation.pixels = true;

@@ -242,6 +242,46 @@ TEST(MessageCdr, ARequestReleasesOnlyWhatCameBeforeIt) {
   EXPECT_FALSE(IsTaken(request));
 }
 
+TEST(MessageCdr, ARequestBringsAnErrorPerSampleAndNoMoreThanABatchHas) {
+  SampleRequest request{.learner_session = 1, .request = 5, .batch = 2};
+  request.error_ids = {7, 8};
+  request.errors = {0, 2.5f};
+  EXPECT_TRUE(IsTaken(request));
+  for (const float error : {-0.5f, NAN, INFINITY}) {
+    request.errors[1] = error;
+    EXPECT_FALSE(IsTaken(request)) << error;
+  }
+  request.errors = {1};
+  EXPECT_FALSE(IsTaken(request));
+  request.errors = {1, 2};
+  request.batch = 1;
+  EXPECT_FALSE(IsTaken(request));
+}
+
+TEST(MessageCdr, AnOlderLearnersRequestBringsNoErrors) {
+  SampleRequest request;
+  Fill(41, &request);
+  request.error_ids.clear();
+  request.errors.clear();
+  Bytes cdr = EncodeCdr(request);
+  Resize(&cdr, cdr.size() - 8 - 8);  // without the two empty lists
+  SampleRequest back;
+  ASSERT_TRUE(ParseCdr(cdr, &back));
+  EXPECT_EQ(Describe(back), Describe(request));
+}
+
+TEST(MessageCdr, ARequestsErrorsHaveTheseBytes) {
+  SampleRequest request{.spec_hash = 1, .learner_session = 2, .request = 3, .batch = 4};
+  request.error_ids = {0x0102030405060708, 9};
+  request.errors = {1, 0.5f};
+  const Bytes cdr = EncodeCdr(request);
+  const Bytes expected{2, 0, 0, 0,                                              // ids
+                       8, 7, 6, 5, 4, 3, 2,    1,    9, 0, 0, 0,   0, 0, 0, 0,  //
+                       2, 0, 0, 0, 0, 0, 0x80, 0x3f, 0, 0, 0, 0x3f};            // errors
+  ASSERT_GT(cdr.size(), expected.size());
+  EXPECT_EQ(Bytes(cdr.end() - static_cast<std::ptrdiff_t>(expected.size()), cdr.end()), expected);
+}
+
 TEST(MessageCdr, ASlotLiesInADescriptorOfAProcessAndHasAToken) {
   BatchSlot slot;
   Fill(3, &slot);

@@ -53,7 +53,9 @@ inline void Fill(uint64_t n, SampleRequest* m) {
         .schema_hash = n + 8,
         .released = n - 1,
         .takes_slots = true,
-        .refused_token = n + 22};
+        .refused_token = n + 22,
+        .error_ids = {n + 24, n + 25},
+        .errors = {0.5f, static_cast<float>(n)}};
 }
 inline void Fill(uint64_t n, BatchSlot* m) {
   *m = {.spec_hash = n + 1000,

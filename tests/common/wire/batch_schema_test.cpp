@@ -102,10 +102,11 @@ TEST(BatchSchema, TheHashTellsWhateverDiffers) {
   add_options([](BatchOptions& o) { o.critic_shifts = 1; });
   add_options([](BatchOptions& o) { o.n_step = 1; });
   add_options([](BatchOptions& o) { o.discount = 0.90000001; });
+  add_options([](BatchOptions& o) { o.probabilities = true; });
   add_spec([](ObservationSpec& s) { s.stack = 1; });
   add_spec([](ObservationSpec& s) { s.action_size = 3; });
   add_spec([](ObservationSpec& s) { s.blocks.clear(); });
-  EXPECT_EQ(hashes.size(), 10u);
+  EXPECT_EQ(hashes.size(), 11u);
   EXPECT_EQ(BatchSchema(Spec(), options).Hash(), BatchSchema(Spec(), options).Hash());
 }
 

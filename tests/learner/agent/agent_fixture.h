@@ -44,6 +44,7 @@ class RandomBatch {
       view.ends[t] = 1 - view.bootstrap[t];
       view.continues[t] = t + 1 < view.continues.size() ? view.bootstrap[t] : 0;
     }
+    for (float& value : view.probability) value = float(random.Uniform(0.001, 0.1));
   }
 
   BatchView View() const { return schema_.View(memory_.data()); }

@@ -13,6 +13,7 @@
 #include "common/config/algorithm_kind.h"
 #include "common/config/config_io.h"
 #include "common/config/on_policy.h"
+#include "common/config/priorities.h"
 #include "tests/learner/agent/agent_fixture.h"
 
 namespace shoal::learner {
@@ -36,7 +37,11 @@ class EachAlgorithm : public testing::TestWithParam<std::string> {
   }
 
   RandomBatch Batch(uint64_t key) const {
-    return {SmallSpec(), config_.learner.batch, key, LearnsOnPolicy(config_)};
+    return {SmallSpec(),
+            BatchOptions{.batch = config_.learner.batch,
+                         .rollout = LearnsOnPolicy(config_),
+                         .probabilities = HasPriorities(config_.replay)},
+            key};
   }
 
   Config config_ = SmallConfig();
@@ -44,6 +49,7 @@ class EachAlgorithm : public testing::TestWithParam<std::string> {
 
 TEST_P(EachAlgorithm, ReportsItsFiguresAndNoOthers) {
   if (config_.learner.algorithm == "sac") config_.sac.aux = {"goal"};
+  if (AlgorithmKindOf(config_).priorities) config_.replay.priorities = "proportional";
   const auto agent = MakeAgent(config_, SmallSpec(), nn::Precision::kF32);
   std::set<std::string_view> declared, reported;
   for (const Figure* figure : algorithm().figures) {

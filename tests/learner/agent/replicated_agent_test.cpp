@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "common/base/error.h"
+#include "common/config/priorities.h"
 #include "common/nn/parallel.h"
 #include "learner/agent/sac/sac_agent.h"
 #include "tests/learner/agent/agent_fixture.h"
@@ -61,6 +62,7 @@ class ReplicatedAgentTest : public testing::TestWithParam<Case> {
     return {Spec(),
             BatchOptions{.batch = config_.learner.batch,
                          .copies = config_.replay.copies,
+                         .probabilities = HasPriorities(config_.replay),
                          .privileged = told ? std::vector<std::string>{"object"}
                                             : std::vector<std::string>{}},
             key};
@@ -87,6 +89,10 @@ TEST_P(ReplicatedAgentTest, GradientsAndFiguresAreThoseOfTheWholeBatch) {
       EXPECT_EQ(figure.figure, other.figure);
       EXPECT_NEAR(figure.value, other.value, 1e-5 + 1e-5 * std::abs(other.value))
           << figure.figure->name;
+    }
+    ASSERT_EQ(got.errors.size(), expected.errors.size());
+    for (size_t b = 0; b < got.errors.size(); ++b) {
+      EXPECT_NEAR(got.errors[b], expected.errors[b], 1e-5) << b;
     }
     const TensorMap after = several->AllTensors(), reference = one->AllTensors();
     size_t compared = 0;
@@ -156,6 +162,17 @@ const Case kCases[] = {
        config->network.hidden = {64, 256};
      }},
     {"sac_clipped", [](Config* config) { config->learner.max_grad_norm = 0.1; }},
+    {"sac_with_priorities",
+     [](Config* config) {
+       config->learner.batch = 12;
+       config->replay.copies = 2;
+       config->replay.priorities = "proportional";
+     }},
+    {"td3_with_lap",
+     [](Config* config) {
+       config->learner.algorithm = "td3";
+       config->replay.priorities = "lap";
+     }},
     {"td3", [](Config* config) { config->learner.algorithm = "td3"; }},
     {"ddpg", [](Config* config) { config->learner.algorithm = "ddpg"; }},
     {"drqv2", [](Config* config) { config->learner.algorithm = "drqv2"; }},

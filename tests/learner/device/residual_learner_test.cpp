@@ -106,8 +106,8 @@ class ResidualLearner {
                       .bounds = {}},
                      y_);
     encoder_.Forward(batch.obs_frames, nn::Statistics::kBatch);
-    engine_->CriticLoss(Evaluate(&critic_, batch.obs_vector, batch.action), y_, q_gradients_,
-                        numbers_);
+    engine_->CriticLoss(Evaluate(&critic_, batch.obs_vector, batch.action), y_, /*rows=*/{},
+                        q_gradients_, numbers_);
     critic_.Backward(q_gradients_);
     encoder_.Backward();
     engine_->Gather(&optimiser_, squares_);

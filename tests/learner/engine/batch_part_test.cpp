@@ -12,7 +12,8 @@
 namespace shoal::learner {
 namespace {
 
-const BatchOptions kOptions{.batch = 6, .rollout = true, .privileged = {"hidden"}};
+const BatchOptions kOptions{
+    .batch = 6, .rollout = true, .probabilities = true, .privileged = {"hidden"}};
 
 ObservationSpec PrivilegedSpec() {
   ObservationSpec spec = SmallSpec();

@@ -117,7 +117,7 @@ TEST_F(CpuEngineTest, ACriticsLossHasItsGradientsAtOnceAndItsFiguresAfterGather)
         &to.q_min_mean, &to.q_min_std, &to.q_min_min, &to.q_min_max}) {
     *number = Holding(NAN);
   }
-  engine_.CriticLoss(q, y, gradients, to);
+  engine_.CriticLoss(q, y, /*rows=*/{}, gradients, to);
   engine_.Gather(&adam_, Holding(NAN));
   double loss = 0, target_mean = 0, mean[2] = {}, square[2] = {}, least_mean = 0, least_square = 0;
   double smallest = INFINITY, largest = -INFINITY;
@@ -309,7 +309,7 @@ TEST(CpuEngineReplicas, NumbersAfterGatherAreOfTheWholeBatch) {
     const Transitions own = engine.Take(data.View());
     engine.Mean(own.reward, own_mean);
     const Array q[] = {own.reward}, gradients[] = {engine.NewArray(1)};
-    engine.CriticLoss(q, own.bootstrap, gradients, numbers);
+    engine.CriticLoss(q, own.bootstrap, /*rows=*/{}, gradients, numbers);
     engine.Gather(&adams[size_t(rank)], squares);
     engine.End();
     const Array put = engine.NewArray(1);

@@ -26,7 +26,9 @@ void DeferringEngine::Begin(const BatchView& drawn) {
 std::optional<Engine::Outcome> DeferringEngine::End() {
   const std::optional<Outcome> outcome = RecordingEngine::End();
   CHECK(outcome.has_value());
-  Ended& ended = in_flight_.emplace_back(Ended{*outcome, {}});
+  Ended& ended = in_flight_.emplace_back(Ended{*outcome, {}, {}});
+  const std::span<const float> errors = RecordingEngine::ReadErrors();
+  ended.errors.assign(errors.begin(), errors.end());
   for (const Number number : numbers_) {
     ended.numbers[nn::HostValues(number).data()] = RecordingEngine::Read(number);
   }
@@ -40,6 +42,7 @@ Engine::Outcome DeferringEngine::WaitOutcome() {
   in_flight_.pop_front();
   if (!ended.outcome.finite) in_flight_.clear();
   known_ = std::move(ended.numbers);
+  known_errors_ = std::move(ended.errors);
   return ended.outcome;
 }
 

@@ -24,6 +24,7 @@ class DeferringEngine final : public RecordingEngine {
   std::optional<Outcome> End() override;
   Outcome WaitOutcome() override;
   double Read(Number number) const override;
+  std::span<const float> ReadErrors() const override { return known_errors_; }
 
   size_t in_flight() const { return in_flight_.size(); }
 
@@ -32,12 +33,14 @@ class DeferringEngine final : public RecordingEngine {
   struct Ended {
     Outcome outcome;
     Values numbers;
+    std::vector<float> errors;
   };
 
   const size_t delay_;
   std::vector<Number> numbers_;
   std::deque<Ended> in_flight_;
   std::optional<Values> known_;  // numbers of the update whose outcome was returned last
+  std::vector<float> known_errors_;
   std::vector<float> not_a_number_;
 };
 

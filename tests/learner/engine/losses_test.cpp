@@ -95,6 +95,47 @@ TEST(CriticLoss, GradientIsTheCentralDifference) {
   }
 }
 
+// Errors of both sizes, on both sides of 1.
+TEST(CriticLoss, OfWeightedRowsAndOfHuberHasTheCentralDifferenceAsGradient) {
+  constexpr int kSamples = 6;
+  Values q0{0.2, -0.5, 3, -4, 1.2, 0.9};
+  const Values q1 = RandomValues(kSamples, 2), y = RandomValues(kSamples, 3);
+  const Values weights{1, 0.5, 0.25, 0.125, 0.75, 0.01};
+  const std::vector<float> of_weights = ToFloats(weights);
+  for (const bool weighted : {false, true}) {
+    for (const bool huber : {false, true}) {
+      const auto loss = [&] {
+        double sum = 0;
+        for (size_t b = 0; b < kSamples; ++b) {
+          for (const double q : {q0[b], q1[b]}) {
+            const double error = std::abs(q - y[b]);
+            const double of_row = huber && error > 1 ? 2 * error - 1 : error * error;
+            sum += (weighted ? weights[b] : 1) * of_row;
+          }
+        }
+        return sum / kSamples;
+      };
+      const RowLoss rows{weighted ? of_weights.data() : nullptr, huber};
+      const std::vector<float> first = ToFloats(q0), second = ToFloats(q1);
+      const float* const q[] = {first.data(), second.data()};
+      EXPECT_NEAR(CriticLossForward(kSamples, q, ToFloats(y).data(), rows).loss, loss(), 1e-6);
+      std::vector<float> gradient(kSamples);
+      CriticLossBackward(kSamples, first.data(), ToFloats(y).data(), gradient.data(), rows);
+      for (size_t b = 0; b < kSamples; ++b) {
+        EXPECT_NEAR(gradient[b], CentralDifference(&q0[b], loss), 1e-6) << b;
+      }
+    }
+  }
+}
+
+TEST(CriticErrors, AreTheLargestOfAllCritics) {
+  const float q0[3] = {1, 2, -3}, q1[3] = {4, 2, 0}, y[3] = {2, 2.5f, 1};
+  const float* const q[] = {q0, q1};
+  float errors[3];
+  CriticErrors(3, q, y, errors);
+  EXPECT_THAT(errors, ::testing::ElementsAre(2, 0.5f, 4));
+}
+
 TEST(TdTargets, TakeTheSmallestOfAnyNumberOfHeads) {
   const float reward[2] = {0, 0}, bootstrap[2] = {1, 1};
   const float q1[2] = {3, 9}, q2[2] = {4, 7}, q3[2] = {2, 8};

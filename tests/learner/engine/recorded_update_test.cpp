@@ -73,7 +73,8 @@ class RecordedUpdateTest : public testing::TestWithParam<Variant> {
   }
 
   Config config_ = SmallConfig();
-  const BatchOptions options_{.batch = config_.learner.batch, .privileged = {"object"}};
+  const BatchOptions options_{
+      .batch = config_.learner.batch, .probabilities = true, .privileged = {"object"}};
   const RandomBatch batch_{Spec(), options_, 1};  // the memory of all batches
   nn::Replica alone_;
   CpuEngine engine_{nn::Precision::kF32, config_.learner.batch, &alone_};
@@ -107,6 +108,7 @@ TEST_P(RecordedUpdateTest, ItsOperationsDoNotDependOnNumbers) {
 
 const Variant kVariants[] = {
     {"sac", [](Config*) {}},
+    {"sac_with_priorities", [](Config* config) { config->replay.priorities = "proportional"; }},
     {"sac_separate",
      [](Config* config) {
        config->network.encoders = "separate";

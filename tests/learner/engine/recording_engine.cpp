@@ -53,6 +53,12 @@ Transitions RecordingEngine::Take(const BatchView& batch) {
   return engine_->Take(batch);
 }
 
+Array RecordingEngine::TakeRows(std::span<float> values) {
+  const Array rows = engine_->TakeRows(values);
+  Keep("TakeRows", rows);
+  return rows;
+}
+
 std::optional<Engine::Outcome> RecordingEngine::End() {
   Keep("End");
   return engine_->End();
@@ -125,10 +131,11 @@ void RecordingEngine::AverageCopies(int copies, int shifts, Array y) {
   engine_->AverageCopies(copies, shifts, y);
 }
 
-void RecordingEngine::CriticLoss(std::span<const Array> q, Array y,
+void RecordingEngine::CriticLoss(std::span<const Array> q, Array y, const CriticRows& rows,
                                  std::span<const Array> q_gradients, const CriticNumbers& figures) {
-  Keep("CriticLoss", q, y, q_gradients, figures.loss);
-  engine_->CriticLoss(q, y, q_gradients, figures);
+  Keep("CriticLoss", q, y, rows.weights, rows.huber, rows.returns_errors, q_gradients,
+       figures.loss);
+  engine_->CriticLoss(q, y, rows, q_gradients, figures);
 }
 
 void RecordingEngine::EntropyActorLoss(Array log_prob, std::span<const Array> q, ActorValue value,

@@ -28,9 +28,11 @@ class RecordingEngine : public Engine {
 
   void Begin(const BatchView& drawn) override;
   Transitions Take(const BatchView& batch) override;
+  Array TakeRows(std::span<float> values) override;
   std::optional<Outcome> End() override;
   Outcome WaitOutcome() override { return engine_->WaitOutcome(); }
   double Read(Number number) const override { return engine_->Read(number); }
+  std::span<const float> ReadErrors() const override { return engine_->ReadErrors(); }
   std::vector<float> ReadRows(Array array) const override { return engine_->ReadRows(array); }
   std::function<std::vector<double>()> CopyMoments(Moments moments) const override {
     return engine_->CopyMoments(moments);
@@ -57,8 +59,8 @@ class RecordingEngine : public Engine {
                        Array noisy) override;
   void Targets(const TargetTerms& terms, Array y) override;
   void AverageCopies(int copies, int shifts, Array y) override;
-  void CriticLoss(std::span<const Array> q, Array y, std::span<const Array> q_gradients,
-                  const CriticNumbers& figures) override;
+  void CriticLoss(std::span<const Array> q, Array y, const CriticRows& rows,
+                  std::span<const Array> q_gradients, const CriticNumbers& figures) override;
   void EntropyActorLoss(Array log_prob, std::span<const Array> q, ActorValue value,
                         Number temperature, std::span<const Array> q_gradients,
                         Number loss) override;

@@ -120,6 +120,37 @@ TEST_F(LossKernels, TargetsOfChosenFunctions) {
   ExpectClose(y, expected, 1e-6);
 }
 
+TEST_F(LossKernels, CriticsOfWeightedRowsAndOfHuber) {
+  constexpr int kRows = 301;
+  const std::vector<float> y = Random(kRows, 1, 3), weights = Random(kRows, 0.01, 1);
+  const std::vector<std::vector<float>> q{Random(kRows, -2, 5), Random(kRows, -2, 5)};
+  const float* const all[] = {q[0].data(), q[1].data()};
+  std::vector<float> errors(kRows);
+  CriticErrors(kRows, all, y.data(), errors.data());
+  for (const bool weighted : {false, true}) {
+    for (const bool huber : {false, true}) {
+      kernels::CriticLoss loss{.rows = kRows,
+                               .critics = 2,
+                               .q = {In(q[0]), In(q[1])},
+                               .y = In(y),
+                               .weights = weighted ? In(weights) : nullptr,
+                               .huber = huber,
+                               .q_gradient = {Out(kRows), Out(kRows)},
+                               .errors = Out(kRows)};
+      loss.figures.loss = Cell();
+      Run(loss);
+      const RowLoss rows{weighted ? weights.data() : nullptr, huber};
+      ExpectNumber(loss.figures.loss, CriticLossForward(kRows, all, y.data(), rows).loss);
+      for (size_t i = 0; i < 2; ++i) {
+        std::vector<float> gradient(kRows);
+        CriticLossBackward(kRows, all[i], y.data(), gradient.data(), rows);
+        ExpectClose(loss.q_gradient[i], gradient, 1e-6);
+      }
+      ExpectClose(loss.errors, errors, 0);
+    }
+  }
+}
+
 TEST_F(LossKernels, ActorsWithEntropy) {
   constexpr int kRows = 300;
   const std::vector<float> log_prob = Random(kRows, -5, 5);
