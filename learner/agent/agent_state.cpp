@@ -52,6 +52,11 @@ void AgentState::Import(const nn::TensorMap& tensors, const std::string& source)
 
 void AgentState::Restore(const nn::TensorMap& tensors, const std::string& source) {
   const nn::TensorMap former = Export();
+  for (const auto& [name, tensor] : tensors) {
+    if (!former.contains(name)) {
+      throw RuntimeError("{}: tensor {}: this configuration has no such tensor", source, name);
+    }
+  }
   try {
     Import(tensors, source);
   } catch (const Error&) {

@@ -32,8 +32,8 @@ class AgentState {
   void Add(Write write, Read read) { parts_.push_back({std::move(write), std::move(read)}); }
 
   nn::TensorMap Export() const;
-  // Reads all entries. If a tensor is missing or has a wrong shape, throws Error that names the
-  // tensor, and changes nothing.
+  // Reads all entries. If a tensor is missing, has a wrong shape or belongs to no entry, throws
+  // Error that names the tensor, and changes nothing.
   void Restore(const nn::TensorMap& tensors, const std::string& source);
 
  private:

@@ -71,8 +71,9 @@ TEST(SacRestore, RestoreRefusesWhatDoesNotFitAndChangesNothing) {
   EXPECT_THAT(Differences(agent->AllTensors(), untouched->AllTensors()), IsEmpty());
 }
 
-// A checkpoint of twins does not fit an ensemble, and the first tensor that is missing is named.
-TEST(SacRestore, AnEnsembleKeepsTheNamesOfTheTwinsAndRefusesTheirCheckpoint) {
+// A checkpoint of twins does not fit an ensemble, nor the other way round. The first tensor that is
+// missing or surplus is named.
+TEST(SacRestore, AnEnsembleKeepsTheNamesOfTheTwinsAndNeitherTakesTheOthersCheckpoint) {
   Config config = SmallConfig();
   config.sac.critics = 3;
   const auto twins = SmallAgent(SmallConfig()), three = SmallAgent(config);
@@ -89,6 +90,10 @@ TEST(SacRestore, AnEnsembleKeepsTheNamesOfTheTwinsAndRefusesTheirCheckpoint) {
   EXPECT_THAT([&] { three->Restore(of_twins, "checkpoint 5"); },
               testing::ThrowsMessage<Error>(
                   testing::AllOf(testing::HasSubstr("checkpoint 5"), testing::HasSubstr("q3"))));
+  EXPECT_THAT([&] { twins->Restore(of_three, "checkpoint 5"); },
+              testing::ThrowsMessage<Error>(
+                  testing::AllOf(testing::HasSubstr("checkpoint 5"), testing::HasSubstr("q3"))));
+  EXPECT_THAT(Differences(twins->AllTensors(), of_twins), IsEmpty());
 }
 
 }  // namespace
