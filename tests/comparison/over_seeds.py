@@ -82,18 +82,24 @@ def mean_text(values, unit=""):
     return f"{mean(values):.2f}{unit} [{low:.2f}, {high:.2f}]"
 
 
+def welch(values, others):
+    """Difference of two means, half of Welch's interval, and t. Both sides have two values or more, of
+    which not all are equal."""
+    a, b = variance(values) / len(values), variance(others) / len(others)
+    freedom = (a + b) ** 2 / (a * a / (len(values) - 1) + b * b / (len(others) - 1))
+    difference = mean(values) - mean(others)
+    return difference, t95(freedom) * math.sqrt(a + b), abs(difference) / math.sqrt(a + b)
+
+
 def difference_text(rates, others):
     """Welch's interval of the difference of two means, in points."""
     if len(rates) < 2 or len(others) < 2:
         return "one seed: no interval of the difference"
-    a, b = variance(rates) / len(rates), variance(others) / len(others)
-    difference = 100 * (mean(rates) - mean(others))
-    if a + b == 0:
+    if variance(rates) + variance(others) == 0:
+        difference = 100 * (mean(rates) - mean(others))
         return f"difference {difference:+.1f} points; the seeds of each side are equal"
-    freedom = (a + b) ** 2 / (a * a / (len(rates) - 1) + b * b / (len(others) - 1))
-    half = 100 * t95(freedom) * math.sqrt(a + b)
-    t = abs(difference) / (100 * math.sqrt(a + b))
-    return f"difference {difference:+.1f} +- {half:.1f} points (Welch, t = {t:.1f})"
+    difference, half, t = welch(rates, others)
+    return f"difference {100 * difference:+.1f} +- {100 * half:.1f} points (Welch, t = {t:.1f})"
 
 
 def load(path):

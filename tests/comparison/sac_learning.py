@@ -37,7 +37,7 @@ import sys
 import tempfile
 import time
 
-from over_seeds import mean, student
+from over_seeds import mean, student, welch
 
 SIDES = ("shoal", "sb3")
 BATCH, HIDDEN, DISCOUNT, TAU, TEMPERATURE = 256, [256, 256], 0.99, 0.005, 1.0
@@ -341,6 +341,11 @@ def summary(out, name, share, seeds):
         pairs = [[figures[figure](pieces[side, seed]) for side in SIDES] for seed in both]
         if pairs and all(None not in pair for pair in pairs):
             row[f"ratio_of_{figure}"] = over_seeds([theirs / ours for ours, theirs in pairs])
+    returns = [row[side]["final_return"]["each"] if row[side]["final_return"] else [] for side in SIDES]
+    if min(map(len, returns)) > 1:
+        difference, half, _ = welch(*returns)
+        row["difference_of_final_return"] = {
+            "mean": round(difference, 2), "interval": [round(difference - half, 2), round(difference + half, 2)]}
     row["pieces"] = [pieces[key] for key in sorted(pieces)]
     return row
 
