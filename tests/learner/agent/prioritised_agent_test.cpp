@@ -5,6 +5,7 @@
 // All transitions terminate, so that a target is the scaled reward. Other tests compare targets.
 #include <cmath>
 
+#include "learner/agent/critic_rows.h"
 #include "tests/common/nn/reference_network.h"
 #include "tests/learner/agent/adam_moments.h"
 #include "tests/learner/agent/agent_fixture.h"
