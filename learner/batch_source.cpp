@@ -144,10 +144,10 @@ BatchCounters BatchSource::counters() const {
   return counters;
 }
 
-void BatchSource::TakeErrors(SampleErrors errors) {
+void BatchSource::TakeErrors(const SampleErrors& errors) {
   const MutexLock lock(mutex_);
   CHECK(errors_.empty() || errors_.back().request < errors.request) << errors.request;
-  errors_.push_back(std::move(errors));
+  errors_.push_back(errors);
 }
 
 SampleErrors BatchSource::ErrorsFor(uint64_t request) {

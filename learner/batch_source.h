@@ -50,7 +50,7 @@ class BatchSource final : public BatchStream {
   void OnSlot(const BatchSlot& slot);
 
   std::optional<Batch> Next(SteadyTime deadline) override;
-  void TakeErrors(SampleErrors errors) override;
+  void TakeErrors(const SampleErrors& errors) override;
   BatchCounters counters() const override;
 
   static constexpr std::chrono::milliseconds kResendAfter{2'000};

@@ -65,7 +65,7 @@ class BatchStream {
   virtual std::optional<Batch> Next(SteadyTime deadline) = 0;
   virtual BatchCounters counters() const = 0;
   // Prioritised sampling: takes the errors of an earlier batch, in the order of requests.
-  virtual void TakeErrors(SampleErrors /*errors*/) {}
+  virtual void TakeErrors(const SampleErrors& /*errors*/) {}
   // Sets the current number of the run's actors. Some streams depend on this number.
   virtual void SetActors(int /*actors*/) {}
 };

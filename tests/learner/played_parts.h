@@ -51,8 +51,8 @@ class PlayedBatches final : public BatchStream {
                  .unsampleable_steps = unsampleable_steps};
   }
   BatchCounters counters() const override { return {}; }
-  void TakeErrors(SampleErrors errors) override {
-    if (taken != nullptr) taken->push_back(std::move(errors));
+  void TakeErrors(const SampleErrors& errors) override {
+    if (taken != nullptr) taken->push_back(errors);
   }
   uint64_t given() const { return next_ - 1; }
 

@@ -59,6 +59,7 @@ ActorValue ActorValueOf(const SacConfig& sac) {
 // Arrays of one number for each row.
 std::vector<Array> NewArrays(int count, Engine* engine) {
   std::vector<Array> arrays;
+  arrays.reserve(size_t(count));
   for (int i = 0; i < count; ++i) arrays.push_back(engine->NewArray(1));
   return arrays;
 }
