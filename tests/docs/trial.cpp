@@ -51,7 +51,7 @@ const std::vector<TrialRule>& TrialRules() {
       {"^shoal experiment run .*--slurm", kElsewhere, "SlurmTest.AnExperimentIsAJobArrayOfItsRuns"},
       {"^podman ", kNotHere, "takes an image of Debian from a registry"},
       {"^pip |/bin/pip |^(/usr/bin/)?python3 -m venv", kNotHere, kPyPI},
-      {"python tests/comparison/", kNotHere, kPyPI},
+      {"python tests/comparison/|^shoal experiment run tests/comparison/", kNotHere, kPyPI},
 
       {"^cmake .*(own_environment_cpp|build/catch_light)|^shoal train --env build/catch_light",
        kElsewhere, "OwnEnvironment.IsBuiltTrainedAndFilmedWithAnInstallation"},
