@@ -279,7 +279,10 @@ TEST(Operate, EveryMetricIsInTheTableOfMetrics) {
   std::set<RoleMetric> seen;
   const TrainingRun run, on_policy;
   // Long enough for rates, which need updates of several seconds, on a fast machine as well.
-  ASSERT_EQ(ExitCode(run.Train({{"observation.goal_mode", "both"}, {"env_steps", "16000"}})), 0);
+  ASSERT_EQ(ExitCode(run.Train({{"observation.goal_mode", "both"},
+                                {"env_steps", "16000"},
+                                {"replay.priorities", "proportional"}})),
+            0);
   EXPECT_GE(LastReported(run, "coordinator").value("last_evaluation_env_steps", 0.0), 16000)
       << "an evaluation that came after the last second's report";
   AddReported(run, &seen);
