@@ -38,7 +38,7 @@ class CriticRowsMaker {
  private:
   const ReplayConfig replay_;
   Engine* const engine_;
-  std::vector<float> weights_;  // (B)
+  std::vector<float> weights_;  // (B), borrowed by the engine until the update ends
 };
 
 }  // namespace shoal::learner

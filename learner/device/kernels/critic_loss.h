@@ -162,11 +162,7 @@ struct CriticLoss {
       for (int i = 0; i < critics; ++i) {
         const float value = q[i][b], error = value - y[b];
         q_gradient[i][b] = 2 * (huber ? Clamp(error, -1.f, 1.f) : error) / float(rows) * weight;
-        if (weights == nullptr && !huber) {
-          sums[kLoss] += Square(double(value) - y[b]);
-        } else {
-          sums[kLoss] += double(weight) * LossOf(double(value) - y[b]);
-        }
+        sums[kLoss] += double(weight) * LossOf(double(value) - y[b]);
         sums[kAll] += value;
         largest = Most(largest, std::abs(error));
       }
