@@ -31,6 +31,7 @@ class Surroundings {
     }
     Link("tests", SourcePath("tests"));
     Link("docs/examples", SourcePath("docs/examples"));
+    Link("docs/results/experiments", SourcePath("docs/results/experiments"));
     fs::create_directories(folder_.path() / "build/release");
     const fs::path bin = fs::path(ProgramPath("shoal")).parent_path();
     Link("build/release/bin", bin);
