@@ -23,8 +23,9 @@ CriticRows CriticRowsMaker::Of(const BatchView& drawn, FigureSheet* figures) {
   if (!HasPriorities(replay_)) return {};
   CriticRows rows{.weights = {}, .huber = replay_.priorities == "lap", .returns_errors = true};
   if (!HasImportanceWeights(replay_)) return rows;
-  weights_ =
+  const std::vector<float> weights =
       ImportanceWeights(drawn.probability, replay_.priority_correction.At(drawn.stored_steps));
+  weights_.assign(weights.begin(), weights.end());
   rows.weights = engine_->TakeRows(weights_);
   figures->SetValue(kImportanceWeight, Summarise(weights_).mean);
   return rows;

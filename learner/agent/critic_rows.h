@@ -38,7 +38,9 @@ class CriticRowsMaker {
  private:
   const ReplayConfig replay_;
   Engine* const engine_;
-  std::vector<float> weights_;  // (B), borrowed by the engine until the update ends
+  // (B), borrowed by the engine until the update ends. The memory is the same in each update,
+  // because an engine may repeat a recording of its operations.
+  std::vector<float> weights_;
 };
 
 }  // namespace shoal::learner
