@@ -83,7 +83,7 @@ void ActionSelector::Select(Acting acting, const std::vector<bool>& asked) {
     Random& stream = streams_[size_t(e)];
     switch (acting) {
       case Acting::kUniform:
-        for (float& a : action) a = float(stream.Uniform(-1.0, 1.0));
+        ActAtRandom(stream, action);
         break;
       case Acting::kExplore:
         exploration_->Act(e, output, stream, action);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/base/check.h"
 #include "common/base/error.h"
@@ -132,10 +133,32 @@ class OrnsteinUhlenbeck final : public Exploration {
   std::vector<std::vector<double>> noise_;  // (E, A)
 };
 
-}  // namespace
+// Another exploration, with random actions in a share of the steps.
+class RandomShare final : public Exploration {
+ public:
+  RandomShare(double share, std::unique_ptr<Exploration> other)
+      : share_(share), other_(std::move(other)) {}
 
-std::unique_ptr<Exploration> MakeExploration(const Config& config, int envs, int action_size,
-                                             double factor) {
+  void OnEnvSteps(uint64_t run_env_steps) override { other_->OnEnvSteps(run_env_steps); }
+  void BeginEpisode(int e) override { other_->BeginEpisode(e); }
+  void Act(int e, const nn::PolicyOutput& policy, Random& stream,
+           std::span<float> action) override {
+    if (stream.Uniform() < share_) {
+      ActAtRandom(stream, action);
+    } else {
+      other_->Act(e, policy, stream, action);
+    }
+  }
+  std::vector<double> StateOf(int e) const override { return other_->StateOf(e); }
+  void SetState(int e, std::span<const double> state) override { other_->SetState(e, state); }
+
+ private:
+  const double share_;
+  const std::unique_ptr<Exploration> other_;
+};
+
+std::unique_ptr<Exploration> MakeNoise(const Config& config, int envs, int action_size,
+                                       double factor) {
   const Schedule& sigma = ExplorationSigma(config);
   switch (ExplorationKindOf(config)) {
     case ExplorationKind::kSquashedGaussian:
@@ -150,6 +173,20 @@ std::unique_ptr<Exploration> MakeExploration(const Config& config, int envs, int
   }
   CHECK(false) << "an exploration without a class";
   return nullptr;
+}
+
+}  // namespace
+
+void ActAtRandom(Random& stream, std::span<float> action) {
+  for (float& a : action) a = static_cast<float>(stream.Uniform(-1.0, 1.0));
+}
+
+std::unique_ptr<Exploration> MakeExploration(const Config& config, int envs, int action_size,
+                                             double factor) {
+  auto noise = MakeNoise(config, envs, action_size, factor);
+  const double share = config.exploration.random_share;
+  if (share == 0) return noise;  // draws no number for a share of nothing
+  return std::make_unique<RandomShare>(share, std::move(noise));
 }
 
 double NoiseFactor(const Config& config, uint32_t actor) {

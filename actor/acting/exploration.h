@@ -10,6 +10,9 @@
 //   policy              u = mean + exp(log_std) eps,   a = clip(u, -1, 1)
 //                       log pi(u) = sum_j -eps_j^2 / 2 - log_std_j - log(2 pi) / 2       (Eq. 22)
 //
+// In a share of the steps, exploration.random_share, the action is uniform in [-1, 1] instead,
+// independent of the other steps (not for `policy`).
+//
 // eps ~ N(0, I); sigma, of ExplorationSigma, follows a schedule over the run's env steps; f is the
 // actor's own factor. ou: Ornstein-Uhlenbeck noise as in Lillicrap et al. 2015, arXiv:1509.02971,
 // section 7.
@@ -50,6 +53,9 @@ class Exploration {
   virtual std::vector<double> StateOf(int e) const = 0;
   virtual void SetState(int e, std::span<const double> state) = 0;
 };
+
+// Writes a uniform random action.
+void ActAtRandom(Random& stream, std::span<float> action);
 
 // Makes the exploration of an actor with `envs` environments. `factor` scales the configured noise.
 std::unique_ptr<Exploration> MakeExploration(const Config& config, int envs, int action_size,

@@ -119,6 +119,7 @@ struct ExplorationConfig {
   double theta = 0.15;                       // ou: rate of return towards zero, per unit of time
   double dt = 0.01;                          // ou: units of time per env step
   int64_t random_steps = 0;                  // first env steps of the run, with random actions
+  double random_share = 0;                   // share of the other env steps, with random actions
   double spread = 1;  // each actor scales the noise by its own factor in 1 / spread .. spread
 };
 

@@ -349,6 +349,9 @@ std::vector<Key> ExplorationKeys() {
                 "geometric progression; 1 = equal noise"),
   };
 }
+      SHOAL_KEY(exploration.random_share, (RealRange{0, 1}),
+                "probability with which a training actor plays a uniform random action in place of "
+                "its policy's action, in each env step"),
 
 std::vector<Key> NetworkKeys() {
   return {

@@ -164,6 +164,43 @@ TEST(GaussianNoise, FollowsTheScheduleOfAnAlgorithmThatHasItsOwn) {
   }
 }
 
+// The deviation is so small that an action of the policy is within 0.01 of its mean.
+TEST(RandomShareOf, IsTheShareOfUniformActions) {
+  for (const double share : {0.2, 1.0}) {
+    Config config = ConfigOf("gaussian", Schedule::Constant(1e-3));
+    config.exploration.random_share = share;
+    Player player(config);
+    int random = 0;
+    double sum = 0, squares = 0;
+    for (int i = 0; i < kSample; ++i) {
+      const double action = player.Act();
+      if (std::fabs(action - std::tanh(kPolicyMean)) < 0.01) continue;
+      ++random;
+      sum += action;
+      squares += action * action;
+    }
+    // A uniform action is so close to the mean with probability 0.01.
+    EXPECT_NEAR(random / double{kSample}, 0.99 * share, 0.01);
+    EXPECT_NEAR(sum / random, 0, 0.03);
+    EXPECT_NEAR(squares / random, 1.0 / 3, 0.01);
+  }
+}
+
+TEST(RandomShareOf, LeavesTheOtherStepsToTheNoise) {
+  Config config = ConfigOf("ou");
+  Player whole(config);
+  config.exploration.random_share = 1;
+  Player none(config);
+  for (int i = 0; i < 5; ++i) whole.Act();
+  const std::vector<double> carried = whole.exploration().StateOf(0);
+  ASSERT_NE(carried, std::vector<double>(1));
+  none.exploration().SetState(0, carried);
+  for (int i = 0; i < 5; ++i) none.Act();
+  EXPECT_EQ(none.exploration().StateOf(0), carried);
+  none.Begin();
+  EXPECT_THAT(none.exploration().StateOf(0), ElementsAre(0));
+}
+
 TEST(NoiseFactorOf, MultipliesTheNoiseOfEveryKind) {
   EXPECT_TRUE(LooksNormal(Player(ConfigOf("gaussian"), 0.5).Noises(), 0, 0.1));
   EXPECT_TRUE(LooksNormal(Player(ConfigOf("squashed_gaussian"), 0.5).Unsquashed(), kPolicyMean,
