@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "common/base/error.h"
 #include "launch/tools/commands/commands.h"
+#include "launch/tools/experiment/merged_summary.h"
 #include "launch/tools/experiment/run_experiment.h"
 #include "launch/tools/experiment/stored_summary.h"
 #include "launch/tools/experiment/summary.h"
@@ -20,13 +23,19 @@ int Status(const std::string& name) {
   return 0;
 }
 
-int Summary(const std::string& name, bool json) {
-  if (name.ends_with(".json")) {
-    const auto summary = ReadStoredSummary(name);
+int Summary(const std::vector<std::string>& names, bool json) {
+  const auto is_file = [](const std::string& name) { return name.ends_with(".json"); };
+  if (std::ranges::all_of(names, is_file)) {
+    const auto summary = ReadMergedSummary({names.begin(), names.end()});
     std::cout << (json ? summary.dump(2) + "\n" : StoredSummaryText(summary)) << std::flush;
     return 0;
   }
-  const ExperimentOutcome outcome = ReadOutcome(ReadExperiment(FindNamed(name, ExperimentsIn())));
+  if (names.size() > 1) {
+    throw UsageError("'{}': expected one experiment, or only files (*.json) of summaries",
+                     *std::ranges::find_if_not(names, is_file));
+  }
+  const ExperimentOutcome outcome =
+      ReadOutcome(ReadExperiment(FindNamed(names[0], ExperimentsIn())));
   std::cout << (json ? ToJson(outcome).dump(2) + "\n" : SummaryText(outcome)) << std::flush;
   return 0;
 }
@@ -104,14 +113,16 @@ void AddSummary(CLI::App& experiment, Action* chosen) {
   CLI::App* command = experiment.add_subcommand(
       "summary",
       "Show the results of an experiment so far: success, return and ratios with intervals. A "
-      "summary.json gives the same from its rows alone.");
-  const auto name = std::make_shared<std::string>();
+      "summary.json gives the same from its rows alone; several files, from different machines, "
+      "give the results of all their runs.");
+  const auto names = std::make_shared<std::vector<std::string>>();
   const auto json = std::make_shared<bool>(false);
   command
-      ->add_option("experiment", *name, "Name within experiments/, folder, or a summary's *.json")
+      ->add_option("experiment", *names,
+                   "Name within experiments/, folder, or *.json of one or more summaries")
       ->required();
   command->add_flag("--json", *json, "Print JSON (schema shoal-experiment-1)");
-  command->callback([=] { *chosen = [=] { return Summary(*name, *json); }; });
+  command->callback([=] { *chosen = [=] { return Summary(*names, *json); }; });
 }
 
 }  // namespace

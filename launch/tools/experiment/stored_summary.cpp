@@ -69,7 +69,9 @@ void NameFormerRule(ordered_json* summary) {
   *summary = std::move(named);
 }
 
-void Recompute(ordered_json* summary) {
+}  // namespace
+
+void ComputeAggregates(ordered_json* summary) {
   if (!summary->contains("n_to_target_rule")) NameFormerRule(summary);
   ordered_json& arms = summary->at("arms");
   for (ordered_json& arm : arms) SetAggregates(RowFigures(arm), &arm);
@@ -85,15 +87,13 @@ void Recompute(ordered_json* summary) {
   if (!frames.frames.empty()) SetFramesAggregates(frames, summary);
 }
 
-}  // namespace
-
 ordered_json ReadStoredSummary(const std::filesystem::path& file) {
   auto summary = ParseBoundedJson<ordered_json>(ReadFile(file));
   if (!summary.is_object() || summary.value("schema", "") != kSummarySchema) {
     throw UsageError("'{}': expected a summary of schema {}", file.string(), kSummarySchema);
   }
   try {
-    Recompute(&summary);
+    ComputeAggregates(&summary);
   } catch (const nlohmann::json::exception& e) {
     throw RuntimeError("{}: {}", file.string(), e.what());
   }

@@ -15,6 +15,10 @@ namespace shoal::launch {
 // reach the target. If the file is not a shoal-experiment-1 object, throws Error naming the file.
 nlohmann::ordered_json ReadStoredSummary(const std::filesystem::path& file);
 
+// Computes the aggregates of a summary from its rows. Throws nlohmann's exceptions if members are
+// missing.
+void ComputeAggregates(nlohmann::ordered_json* summary);
+
 // Text for the terminal: the question, a line per arm, the returns at environment frames, the
 // ratios.
 std::string StoredSummaryText(const nlohmann::ordered_json& summary);
