@@ -260,6 +260,11 @@ std::vector<Key> SacKeys() {
       SHOAL_KEY(sac.actor_value, (Choices{{"min", "mean"}}),
                 "value of an action in the actor's loss: min = the smallest value of the critics; "
                 "mean = their mean"),
+      SHOAL_KEY(sac.quantiles, (IntegerRange{0, 200}),
+                "quantiles of the return that each critic computes; 0 = only the mean"),
+      SHOAL_KEY(sac.dropped_quantiles, (IntegerRange{0, 199}),
+                "for sac.quantiles: this number, times sac.critics, of the largest quantiles of all "
+                "target critics are left out of the targets"),
       SHOAL_KEY(sac.critic_blocks, (AnyValue{}),
                 "recorded blocks that the critic gets instead of pixels, in addition to the "
                 "vectors that the policy observes: true = all, false = none (the critic gets the "
@@ -344,14 +349,14 @@ std::vector<Key> ExplorationKeys() {
           exploration.random_steps, (IntegerRange{0, 1'000'000'000'000}),
           "env steps at the beginning of the run that are played with uniform random actions, "
           "divided among the actors; before the first weights arrive, all actions are random"),
+      SHOAL_KEY(exploration.random_share, (RealRange{0, 1}),
+                "probability with which a training actor plays a uniform random action in place of "
+                "its policy's action, in each env step"),
       SHOAL_KEY(exploration.spread, (RealRange{1, 100}),
                 "the noise of N actors is multiplied by factors from 1/spread to spread in "
                 "geometric progression; 1 = equal noise"),
   };
 }
-      SHOAL_KEY(exploration.random_share, (RealRange{0, 1}),
-                "probability with which a training actor plays a uniform random action in place of "
-                "its policy's action, in each env step"),
 
 std::vector<Key> NetworkKeys() {
   return {

@@ -8,6 +8,7 @@
 #include "common/config/config_io.h"
 #include "common/config/exploration_kind.h"
 #include "common/config/on_policy.h"
+#include "common/config/priorities.h"
 
 namespace shoal {
 namespace {
@@ -179,6 +180,26 @@ void ValidateCritics(const Config& config) {
   }
 }
 
+// Checks critics that compute quantiles.
+void ValidateQuantiles(const Config& config) {
+  if (config.sac.quantiles == 0) {
+    if (config.sac.dropped_quantiles == Config().sac.dropped_quantiles) return;
+    throw UsageError("sac.dropped_quantiles = {}: expected it unset without sac.quantiles",
+                     config.sac.dropped_quantiles);
+  }
+  if (config.sac.dropped_quantiles >= config.sac.quantiles) {
+    throw UsageError("sac.dropped_quantiles = {}: expected less than sac.quantiles = {}",
+                     config.sac.dropped_quantiles, config.sac.quantiles);
+  }
+  const std::pair<const char*, bool> others[] = {
+      {"sac.target_critics", config.sac.target_critics != 0},
+      {"replay.copies", config.replay.copies != 1},
+      {"replay.priorities", HasPriorities(config.replay)}};
+  for (const auto& [key, is_set] : others) {
+    if (is_set) throw UsageError("{}: expected it unset with sac.quantiles", key);
+  }
+}
+
 // Checks privileged inputs. PrivilegedBlocksOf checks whether the task records them.
 void ValidatePrivileged(const Config& config) {
   if (!config.sac.aux.empty() && !config.observation.pixels) {
@@ -293,6 +314,7 @@ void Validate(const Config& config) {
   if (!LearnsOnPolicy(config)) {
     ValidateEncoders(config);
     ValidateCritics(config);
+    ValidateQuantiles(config);
     ValidatePrivileged(config);
     ValidateReplay(config);
   }

@@ -128,13 +128,13 @@ HeadPlan PlanObservationHead(const NetworkConfig& network, const ObservationSpec
 }
 
 HeadPlan PlanCritic(const NetworkConfig& network, const ObservationSpec& spec,
-                    const std::string& name, int count) {
+                    const std::string& name, int count, int outputs) {
   HeadPlan plan{.trunk = PlanTrunk(network, spec, name),
                 .vector_columns = spec.VectorSize(),
                 .extra_columns = spec.action_size};
   const int inputs = plan.trunk_columns() + plan.vector_columns + plan.extra_columns;
   for (int i = 1; i <= count; ++i) {
-    plan.mlps.push_back(PlanMlp(network, name + ".q" + std::to_string(i), inputs, 1));
+    plan.mlps.push_back(PlanMlp(network, name + ".q" + std::to_string(i), inputs, outputs));
   }
   return plan;
 }

@@ -66,9 +66,9 @@ struct ActorPlan : HeadPlan {
 ActorPlan PlanActor(const NetworkConfig& network, const ObservationSpec& spec,
                     ActorOutput output = ActorOutput::kGaussian, const std::string& name = "actor");
 // Plan of `count` Q functions of observation and action, with MLPs `name`.q1, `name`.q2, ...
-// `name`: for example "critic" or "target".
+// `name`: for example "critic" or "target". `outputs`: numbers that each function computes.
 HeadPlan PlanCritic(const NetworkConfig& network, const ObservationSpec& spec,
-                    const std::string& name, int count = 2);
+                    const std::string& name, int count = 2, int outputs = 1);
 
 // Plan of one MLP `name`.mlp that computes `outputs` functions of the observation alone. Its
 // weights start orthogonal, with gain sqrt(2) in hidden layers and `output_gain` in the last layer,

@@ -12,7 +12,7 @@ CriticHeads::CriticHeads(const LayerContext& context, const HeadPlan& plan,
                          const dnnl::memory& features, const dnnl::memory& features_gradient)
     : trunk_(context, plan, features, features_gradient),
       action_size_(plan.extra_columns),
-      zeros_(size_t(context.batch)),
+      zeros_(size_t(context.batch) * size_t(plan.mlps[0].output().channels)),
       input_gradient_(size_t(trunk_.input().size())) {
   mlps_.reserve(plan.mlps.size());
   for (const NetworkPlan& mlp : plan.mlps) mlps_.emplace_back(context, mlp, trunk_.input());

@@ -23,7 +23,8 @@ class CriticHeads {
               const dnnl::memory& features_gradient);
 
   int count() const { return int(mlps_.size()); }
-  const float* q(int i) const { return mlps_[size_t(i)].output(); }  // (B)
+  // (B), or (B, outputs) if the plan has several outputs.
+  const float* q(int i) const { return mlps_[size_t(i)].output(); }
 
   // See ObservationTrunk::features.
   const HostFeatures* trunk_features() const { return trunk_.features(); }
@@ -35,7 +36,7 @@ class CriticHeads {
   // different actions, may follow one ForwardObservation.
   void ForwardAction(const float* action);
 
-  // dL/dq_i (B), one for each Q function; an empty array counts as zeros.
+  // dL/dq_i, of the shape of q(i), one for each Q function; an empty array counts as zeros.
   using QGradients = std::span<const Array>;
   // Computes the gradients of all parameters and of the features.
   void Backward(QGradients q_gradients);
@@ -50,7 +51,7 @@ class CriticHeads {
   ObservationTrunk trunk_;
   std::vector<Mlp> mlps_;
   int action_size_;
-  std::vector<float> zeros_;           // (B)
+  std::vector<float> zeros_;           // (B), or (B, outputs)
   std::vector<float> input_gradient_;  // (B, F + V + A)
 };
 

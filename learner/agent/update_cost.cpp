@@ -72,8 +72,8 @@ double OffPolicy(const Config& config, const ObservationSpec& spec, const Encode
   const nn::ActorPlan actor = nn::PlanActor(
       config.network, spec,
       LearnsDeviation(config) ? nn::ActorOutput::kGaussian : nn::ActorOutput::kDeterministic);
-  const nn::HeadPlan critics =
-      nn::PlanCritic(config.network, CriticSpec(config, spec), "critic", critic_count);
+  const nn::HeadPlan critics = nn::PlanCritic(config.network, CriticSpec(config, spec), "critic",
+                                              critic_count, std::max(1, config.sac.quantiles));
   const double of_actor = MultiplyAdds(actor), of_critics = MultiplyAdds(critics);
   const bool separate = config.network.encoders == "separate";
   const bool asymmetric = bool(config.sac.critic_blocks);

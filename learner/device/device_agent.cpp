@@ -43,6 +43,10 @@ void CheckComputes(const Config& config) {
         "learner.algorithm = {}: a device does not compute this algorithm, expected {}",
         algorithm.name, fmt::join(names, " | "));
   }
+  if (config.sac.quantiles != 0) {
+    throw UsageError("sac.quantiles = {}: a device does not compute quantiles, expected 0",
+                     config.sac.quantiles);
+  }
 }
 
 std::unique_ptr<Agent> MakeDeviceAgent(const Config& config, const ObservationSpec& spec,

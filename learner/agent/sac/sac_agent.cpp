@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // One update, in order (equations of docs/algorithm.md):
 //
-//   1. targets     next_obs -> encoders -> actor, target heads -> y            (Eq. 5, 15, 30)
-//   2. critic      obs -> encoder -> critic heads -> loss -> encoder and critic step   (Eq. 6)
+//   1. targets     next_obs -> encoders -> actor, target heads -> y        (Eq. 5, 15, 30, 35)
+//   2. critic      obs -> encoder -> critic heads -> loss -> encoder and critic step   (Eq. 6, 35)
 //   3. actor       the features of 2, detached -> actor -> critic heads -> actor step
 //                                                                                  (Eq. 7, 30)
 //   4. temperature from the log-probabilities of 3                                     (Eq. 8)
@@ -23,6 +23,8 @@
 // whole batch.
 #include "learner/agent/sac/sac_agent.h"
 
+#include <array>
+#include <memory>
 #include <vector>
 
 #include "common/base/random.h"
@@ -32,6 +34,7 @@
 #include "learner/agent/critic_vectors.h"
 #include "learner/agent/figure_sheet.h"
 #include "learner/agent/pending_updates.h"
+#include "learner/agent/sac/quantile_values.h"
 #include "learner/agent/sac/sac_networks.h"
 #include "learner/agent/sample_figures.h"
 #include "learner/agent/step_sizes.h"
@@ -56,11 +59,13 @@ ActorValue ActorValueOf(const SacConfig& sac) {
   return sac.actor_value == "mean" ? ActorValue::kMean : ActorValue::kMin;
 }
 
-// Arrays of one number for each row.
-std::vector<Array> NewArrays(int count, Engine* engine) {
+// Arrays of the shape of each critic's values.
+std::vector<Array> NewGradients(const SacConfig& sac, Engine* engine) {
   std::vector<Array> arrays;
-  arrays.reserve(size_t(count));
-  for (int i = 0; i < count; ++i) arrays.push_back(engine->NewArray(1));
+  arrays.reserve(size_t(sac.critics));
+  for (int i = 0; i < sac.critics; ++i) {
+    arrays.push_back(engine->NewArray(SacNetworks::ValuesOfCritic(sac)));
+  }
   return arrays;
 }
 
@@ -109,13 +114,14 @@ class SacAgent final : public Agent {
   VectorStandard standard_;
   CriticVectors critic_vectors_;
   CriticRowsMaker critic_rows_;
+  const std::unique_ptr<QuantileValues> quantiles_;  // null: a critic has one value
   uint64_t updates_ = 0;
   AgentState state_;
 
   // Arrays and numbers of an update. Dimensions: b rows of this replica, A actions.
   const SquashedSample sample_;
   const Array targets_;                                             // y (b)
-  const std::vector<Array> q_gradients_;                            // (b) for each critic
+  const std::vector<Array> q_gradients_;                            // (b), or (b, M), of a critic
   const Array action_gradient_, mean_gradient_, log_std_gradient_;  // (b, A)
   const Number rate_factor_;                                        // of the optimisers
   const Number temperature_, next_temperature_;                     // before and after it
@@ -135,10 +141,11 @@ SacAgent::SacAgent(const Config& config, const ObservationSpec& spec, Engine* en
       standard_(config.learner, engine, spec.VectorSize(), PrivilegedSize(config, spec)),
       critic_vectors_(config, spec, engine),
       critic_rows_(config.replay, engine),
+      quantiles_(QuantileValues::Make(config, engine)),
       sample_{engine->NewArray(spec.action_size), engine->NewArray(spec.action_size),
               engine->NewArray(1)},
       targets_(engine->NewArray(1)),
-      q_gradients_(NewArrays(config.sac.critics, engine)),
+      q_gradients_(NewGradients(config.sac, engine)),
       action_gradient_(engine->NewArray(spec.action_size)),
       mean_gradient_(engine->NewArray(spec.action_size)),
       log_std_gradient_(engine->NewArray(spec.action_size)),
@@ -167,7 +174,7 @@ void SacAgent::ComputeTargets(const Seen& seen, Random* random) {
   const auto [mean, log_std] = networks_.ForwardActor(batch.next_obs_vector);
   engine_->SampleSquashedGaussian(mean, log_std, random, sample_);
   const auto next_q = networks_.ForwardTarget(seen.of_critic.next_obs, sample_.action);
-  engine_->Targets({.reward = batch.reward,
+  TargetTerms terms{.reward = batch.reward,
                     .bootstrap = batch.bootstrap,
                     .next_q = next_q,
                     .drawn = DrawnCritics(config_.sac),
@@ -176,8 +183,16 @@ void SacAgent::ComputeTargets(const Seen& seen, Random* random) {
                     .temperature = temperature_,
                     .reward_scale = float(config_.learner.reward_scale),
                     .discount = float(config_.learner.discount),
-                    .bounds = bounds_},
-                   targets_);
+                    .bounds = bounds_};
+  if (quantiles_) {
+    const std::array no_value{quantiles_->zeros()};
+    terms.next_q = no_value;
+    terms.bounds = {};
+    engine_->Targets(terms, targets_);
+    quantiles_->ComputeTargets(targets_, batch.bootstrap, next_q);
+    return;
+  }
+  engine_->Targets(terms, targets_);
   engine_->AverageCopies(config_.replay.copies, config_.replay.target_shifts, targets_);
 }
 
@@ -185,11 +200,17 @@ void SacAgent::UpdateCritic(const Seen& seen, const OnStageEnd& on_stage_end) {
   networks_.Encode(seen.batch.obs_frames);
   const auto q = networks_.ForwardCritic(seen.of_critic.obs, seen.batch.action);
   on_stage_end(UpdateStage::kForward);
-  engine_->CriticLoss(q, targets_, seen.rows, q_gradients_, critic_numbers_);
+  CriticNumbers numbers = critic_numbers_;
+  if (quantiles_) {
+    quantiles_->CriticLoss(q, q_gradients_, critic_numbers_);
+    numbers.loss = quantiles_->loss();
+  } else {
+    engine_->CriticLoss(q, targets_, seen.rows, q_gradients_, critic_numbers_);
+  }
   if (networks_.Aux(SacNetworks::Head::kCritic)) ForwardBackwardAux(seen);
   networks_.BackwardCritic(q_gradients_, critic_squares_);
-  engine_->RequireFinite(critic_numbers_.loss);
-  figures_.SetCritic(critic_numbers_, critic_squares_);
+  engine_->RequireFinite(numbers.loss);
+  figures_.SetCritic(numbers, critic_squares_);
   on_stage_end(UpdateStage::kBackward);
   networks_.StepCritic();
   on_stage_end(UpdateStage::kOptimiser);
@@ -202,8 +223,14 @@ void SacAgent::UpdateActor(const Seen& seen, Random* random, const OnStageEnd& o
   engine_->SampleSquashedGaussian(mean, log_std, random, sample_);
   const auto q = networks_.ForwardCritic(seen.of_critic.obs, sample_.action);
   on_stage_end(UpdateStage::kForward);
-  engine_->EntropyActorLoss(sample_.log_prob, q, ActorValueOf(config_.sac), temperature_,
-                            q_gradients_, actor_loss_);
+  if (quantiles_) {
+    engine_->EntropyActorLoss(sample_.log_prob, quantiles_->Means(q), ActorValueOf(config_.sac),
+                              temperature_, quantiles_->mean_gradients(), actor_loss_);
+    quantiles_->SpreadGradients(q_gradients_);
+  } else {
+    engine_->EntropyActorLoss(sample_.log_prob, q, ActorValueOf(config_.sac), temperature_,
+                              q_gradients_, actor_loss_);
+  }
   engine_->SquashedGaussianFigures(sample_, entropy_, saturation_);
   networks_.BackwardAction(q_gradients_, action_gradient_);
   engine_->SquashedGaussianBackward(sample_, action_gradient_, temperature_, mean_gradient_,

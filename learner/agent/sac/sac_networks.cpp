@@ -26,7 +26,8 @@ const nn::Features* FeaturesOf(const EncoderModule* encoder) {
 bool Separate(const Config& config) { return config.network.encoders == "separate"; }
 
 nn::HeadPlan CriticPlan(const Config& config, const ObservationSpec& spec, const char* name) {
-  return nn::PlanCritic(config.network, CriticSpec(config, spec), name, config.sac.critics);
+  return nn::PlanCritic(config.network, CriticSpec(config, spec), name, config.sac.critics,
+                        SacNetworks::ValuesOfCritic(config.sac));
 }
 
 std::vector<ParameterSet*> ParametersOf(const std::vector<Module*>& modules) {

@@ -22,6 +22,7 @@
 // that returned the result.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
@@ -50,6 +51,9 @@ class SacNetworks {
   SacNetworks(const SacNetworks&) = delete;
   SacNetworks& operator=(const SacNetworks&) = delete;
 
+  // Numbers that a critic computes for an action: a value, or its quantiles.
+  static int ValuesOfCritic(const SacConfig& sac) { return std::max(1, sac.quantiles); }
+
   // The next three functions encode frames (B, K*C, H, W). The forward functions read the features,
   // which stay valid until the next call. Without pixels, the three functions do nothing.
   //
@@ -70,7 +74,7 @@ class SacNetworks {
     Array mean, log_std;  // (B, A), before tanh
   };
   Gaussian ForwardActor(Array vector);
-  using Values = std::vector<Array>;  // (B) for each critic
+  using Values = std::vector<Array>;  // (B), or quantiles (B, M), of each critic
   Values ForwardTarget(Array vector, Array action);
   Values ForwardCritic(Array vector, Array action);
 
@@ -82,7 +86,8 @@ class SacNetworks {
   // AuxLoss::mean_square, the mean square error of the labels. CHECKs that sac.aux is set.
   Number ForwardBackwardAux(const Transitions& drawn);
 
-  // Computes the gradients of the critic and its encoder from dL/dq_i (B) of the latest
+  // Computes the gradients of the critic and its encoder from dL/dq_i, of the shape of the values,
+  // of the latest
   // ForwardCritic, which must follow the latest Encode. Also gathers the gradients; `squares`: see
   // Engine::Gather.
   void BackwardCritic(std::span<const Array> q_gradients, Number squares);

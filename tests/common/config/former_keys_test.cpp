@@ -75,9 +75,13 @@ TEST(FormerKeys, OfARunsConfigurationAreReadWithoutANote) {
   written.spec.task = "FetchPush";
   written.spec.blocks = {{"observation", 10}};
   WriteRunConfig(run.path(), written);
-  // Version 0.1 wrote the section's keys among the learner's. It lacked the keys of ensembles.
+  // Version 0.1 wrote the section's keys among the learner's. It lacked the keys of ensembles and
+  // quantiles.
   json object = json::parse(ReadFile(run.path() / "config.json"));
-  for (const char* later : {"critics", "target_critics", "actor_value"}) object["sac"].erase(later);
+  for (const char* later :
+       {"critics", "target_critics", "actor_value", "quantiles", "dropped_quantiles"}) {
+    object["sac"].erase(later);
+  }
   object["learner"].update(object.at("sac"));
   object.erase("sac");
   ASSERT_TRUE(object["learner"].contains("target_entropy"));

@@ -163,6 +163,28 @@ TEST(Validate, ATargetOfCriticsHasNoMoreThanThereAre) {
   EXPECT_EQ(refusal(5, 5), "");
 }
 
+TEST(Validate, QuantilesAreMoreThanAreDroppedAndHaveRulesOfTheirOwn) {
+  const auto refusal = [](const std::function<void(Config*)>& change) {
+    return Refusal([&](Config* c) {
+      c->sac.quantiles = 5;
+      change(c);
+    });
+  };
+  EXPECT_EQ(refusal([](Config*) {}), "");
+  EXPECT_EQ(refusal([](Config* c) { c->sac.dropped_quantiles = 5; }),
+            "sac.dropped_quantiles = 5: expected less than sac.quantiles = 5");
+  EXPECT_EQ(Refusal([](Config* c) { c->sac.dropped_quantiles = 1; }),
+            "sac.dropped_quantiles = 1: expected it unset without sac.quantiles");
+  EXPECT_EQ(refusal([](Config* c) { c->sac.target_critics = 2; }),
+            "sac.target_critics: expected it unset with sac.quantiles");
+  EXPECT_EQ(refusal([](Config* c) { c->replay.copies = 2; }),
+            "replay.copies: expected it unset with sac.quantiles");
+  EXPECT_EQ(refusal([](Config* c) { c->replay.priorities = "lap"; }),
+            "replay.priorities: expected it unset with sac.quantiles");
+  EXPECT_THAT(refusal([](Config* c) { c->learner.algorithm = "td3"; }),
+              HasSubstr("sac.quantiles belongs to learner.algorithm = sac"));
+}
+
 TEST(Validate, TheTargetEntropyIsSetInOneWay) {
   EXPECT_EQ(Refusal([](Config* c) { c->sac.target_entropy = -3; }), "");
   EXPECT_EQ(Refusal([](Config* c) { c->sac.target_entropy_per_action = 0; }), "");

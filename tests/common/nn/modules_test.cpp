@@ -140,9 +140,9 @@ TEST_P(ModulesTest, AClampedDeviationHasNoGradientBeyondItsRange) {
 }
 
 TEST_P(ModulesTest, ACriticOfAnyNumberOfFunctionsTrainsTheEncoderByThoseInTheLoss) {
-  for (const int count : {1, 3}) {
+  for (const auto& [count, outputs] : {std::pair{1, 1}, {3, 1}, {3, 4}}) {
     EncoderModule encoder(PlanEncoder(network_, spec_), Use::kTraining, context_);
-    CriticModule critic(PlanCritic(network_, spec_, "critic", count), &encoder.features(),
+    CriticModule critic(PlanCritic(network_, spec_, "critic", count, outputs), &encoder.features(),
                         /*trains_encoder=*/true, Use::kTraining, context_);
     Start(&encoder, 1);
     Start(&critic, 2);
@@ -162,7 +162,7 @@ TEST_P(ModulesTest, ACriticOfAnyNumberOfFunctionsTrainsTheEncoderByThoseInTheLos
     }
 
     // The last function alone is in the loss.
-    const Values dq = RandomValues(kRows, 6);
+    const Values dq = RandomValues(size_t(kRows * outputs), 6);
     const std::vector<float> last = ToFloats(dq);
     auto gradients = std::vector<Array>(size_t(count));
     gradients.back() = HostArray(last);
@@ -173,10 +173,13 @@ TEST_P(ModulesTest, ACriticOfAnyNumberOfFunctionsTrainsTheEncoderByThoseInTheLos
     if (GetParam() != Precision::kF32) continue;
     Values action = action_, exact;
     for (double& value : action) {
-      exact.push_back(CentralDifference(&value, [&] { return Dot(dq, q(count - 1, action)); }));
+      exact.push_back(
+          CentralDifference(&value, [&, last = count - 1] { return Dot(dq, q(last, action)); }));
     }
     EXPECT_LT(RelativeError(daction, exact), 5e-4);
-    const std::function<double()> loss = [&] { return Dot(dq, q(count - 1, action_)); };
+    const std::function<double()> loss = [&, last = count - 1] {
+      return Dot(dq, q(last, action_));
+    };
     ExpectGradients(&encoder, &network, loss);
     if (count == 1) {
       ExpectGradients(&critic, &network, loss);

@@ -134,6 +134,7 @@ const Case kCases[] = {
        config->sac.target_critics = 2;
        config->sac.actor_value = "mean";
      }},
+    {"sac_with_quantiles", [](Config* config) { config->sac.quantiles = 5; }},
     {"sac_with_copies",
      [](Config* config) {
        config->learner.batch = 12;

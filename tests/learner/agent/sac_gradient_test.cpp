@@ -26,11 +26,12 @@ struct Sample {
   Values action, log_prob;
 };
 
-// An ensemble of critics: the keys of section sac.
+// Critics: the keys of section sac.
 struct Ensemble {
   std::string name;
   int critics = 2, target_critics = 0;
   std::string actor_value = "min";
+  int quantiles = 0, dropped_quantiles = 2;
 };
 
 void PrintTo(const Ensemble& each, std::ostream* out) { *out << each.name; }
@@ -40,6 +41,8 @@ Config EnsembleConfig(const Ensemble& ensemble) {
   config.sac.critics = ensemble.critics;
   config.sac.target_critics = ensemble.target_critics;
   config.sac.actor_value = ensemble.actor_value;
+  config.sac.quantiles = ensemble.quantiles;
+  config.sac.dropped_quantiles = ensemble.dropped_quantiles;
   config.learner.target_period = 1'000;  // so that the target critics keep their differences
   return config;
 }
@@ -92,18 +95,30 @@ class SacGradientTest : public testing::TestWithParam<Ensemble> {
     const Values features = network.Features(batch_size_, view.next_obs_frames.data());
     const Values vector = ToDoubles(view.next_obs_vector);
     const Sample next = Draw(network.Actor(batch_size_, features, vector), noise);
-    Values least(size_t(batch_size_), INFINITY);
+    const size_t rows = size_t(batch_size_);
+    std::vector<Values> next_values(rows);  // of all critics, for each row
     for (const int i : critics) {
       const Values q = network.Q("target", i, batch_size_, features, vector, next.action);
-      for (size_t b = 0; b < q.size(); ++b) least[b] = std::min(least[b], q[b]);
+      const size_t columns = q.size() / rows;
+      for (size_t k = 0; k < q.size(); ++k) next_values[k / columns].push_back(q[k]);
     }
     Values y;
-    for (size_t b = 0; b < least.size(); ++b) {
-      const double value = least[b] - temperature_ * next.log_prob[b];
-      y.push_back(config_.learner.reward_scale * view.reward[b] +
-                  view.bootstrap[b] * config_.learner.discount * value);
+    for (size_t b = 0; b < rows; ++b) {
+      std::ranges::sort(next_values[b]);
+      next_values[b].resize(TargetsOfARow());
+      for (const double next_value : next_values[b]) {
+        const double value = next_value - temperature_ * next.log_prob[b];
+        y.push_back(config_.learner.reward_scale * view.reward[b] +
+                    view.bootstrap[b] * config_.learner.discount * value);
+      }
     }
     return y;
+  }
+
+  // The smallest value, or the quantiles without the largest ones.
+  size_t TargetsOfARow() const {
+    const SacConfig& sac = config_.sac;
+    return sac.quantiles == 0 ? 1 : size_t(sac.critics * (sac.quantiles - sac.dropped_quantiles));
   }
 
   // The subsets of target critics that lead to this mean target. Several subsets lead to the same
@@ -114,7 +129,7 @@ class SacGradientTest : public testing::TestWithParam<Ensemble> {
     std::vector<Subset> fitting;
     for (const Subset& subset : SubsetsOf(all, drawn == 0 ? all : drawn)) {
       const Values y = Targets(network, subset, noise);
-      const double mean = std::accumulate(y.begin(), y.end(), 0.0) / batch_size_;
+      const double mean = std::accumulate(y.begin(), y.end(), 0.0) / double(y.size());
       if (std::abs(mean - target_mean) < 1e-5) fitting.push_back(subset);
     }
     return fitting;
@@ -127,9 +142,30 @@ class SacGradientTest : public testing::TestWithParam<Ensemble> {
     for (int i = 1; i <= config_.sac.critics; ++i) {
       const Values q = network.Q("critic", i, batch_size_, features, ToDoubles(view.obs_vector),
                                  ToDoubles(view.action));
-      for (size_t b = 0; b < y.size(); ++b) loss += (q[b] - y[b]) * (q[b] - y[b]);
+      loss += config_.sac.quantiles == 0 ? SumOfSquares(q, y) : SumOfQuantileLosses(q, y);
     }
     return loss / batch_size_;
+  }
+
+  static double SumOfSquares(const Values& q, const Values& y) {
+    double sum = 0;
+    for (size_t b = 0; b < y.size(); ++b) sum += (q[b] - y[b]) * (q[b] - y[b]);
+    return sum;
+  }
+
+  double SumOfQuantileLosses(const Values& q, const Values& y) const {
+    const size_t count = size_t(config_.sac.quantiles), targets = TargetsOfARow();
+    double sum = 0;
+    for (size_t k = 0; k < q.size(); ++k) {
+      const double tau = (double(k % count) + 0.5) / double(count);
+      for (size_t j = 0; j < targets; ++j) {
+        const double error = y[k / count * targets + j] - q[k];
+        const double size = std::abs(error);
+        const double huber = size <= 1 ? error * error / 2 : size - 0.5;
+        sum += (error < 0 ? 1 - tau : tau) * huber / double(count * targets);
+      }
+    }
+    return sum;
   }
 
   // The actor of `network` judged by the critics of `critic`, on given features.
@@ -141,8 +177,11 @@ class SacGradientTest : public testing::TestWithParam<Ensemble> {
     Values value(sample.log_prob.size(), mean ? 0 : INFINITY);
     for (int i = 1; i <= config_.sac.critics; ++i) {
       const Values q = critic.Q("critic", i, batch_size_, features, vector, sample.action);
-      for (size_t b = 0; b < q.size(); ++b) {
-        value[b] = mean ? value[b] + q[b] / config_.sac.critics : std::min(value[b], q[b]);
+      const size_t columns = q.size() / value.size();  // quantiles count by their mean
+      for (size_t b = 0; b < value.size(); ++b) {
+        const auto row = q.begin() + ptrdiff_t(b * columns);
+        const double own = std::accumulate(row, row + ptrdiff_t(columns), 0.0) / double(columns);
+        value[b] = mean ? value[b] + own / config_.sac.critics : std::min(value[b], own);
       }
     }
     double loss = 0;
@@ -215,6 +254,8 @@ const Ensemble kEnsembles[] = {
     {.name = "twins_by_their_mean", .actor_value = "mean"},
     {.name = "redq", .critics = 5, .target_critics = 2, .actor_value = "mean"},
     {.name = "one_target_of_three", .critics = 3, .target_critics = 1},
+    {.name = "quantiles", .actor_value = "mean", .quantiles = 5, .dropped_quantiles = 1},
+    {.name = "quantiles_of_three", .critics = 3, .quantiles = 4, .dropped_quantiles = 0},
 };
 
 INSTANTIATE_TEST_SUITE_P(Of, SacGradientTest, testing::ValuesIn(kEnsembles),

@@ -34,6 +34,12 @@ TEST(DeviceAgent, EveryPresetAndAlgorithmIsComputed) {
   }
 }
 
+TEST(DeviceAgent, QuantilesAreRefused) {
+  Config config = SmallConfig();
+  config.sac.quantiles = 5;
+  EXPECT_EQ(Refusal(config), "sac.quantiles = 5: a device does not compute quantiles, expected 0");
+}
+
 // A device refuses no encoder, so it must have the layers of each.
 TEST(DeviceAgent, EveryEncoderIsBuilt) {
   for (const nn::EncoderKind& kind : nn::EncoderKinds()) {

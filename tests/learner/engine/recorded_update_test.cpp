@@ -21,6 +21,7 @@ namespace {
 struct Variant {
   std::string name;
   std::function<void(Config*)> set;
+  float reward = 1e25f;  // of a loss that is not finite
 };
 
 void PrintTo(const Variant& variant, std::ostream* out) { *out << variant.name; }
@@ -100,7 +101,7 @@ TEST_P(RecordedUpdateTest, ItsOperationsDoNotDependOnNumbers) {
     ASSERT_GT(finite.convolutions, 0u);
     agent_->Restore(before, "test");
     expect_same(finite, "a batch", 0, [](BatchView view) { view.obs_vector[3] = NAN; });
-    expect_same(finite, "a loss", 0, [](BatchView view) { view.reward[2] = 1e25f; });
+    expect_same(finite, "a loss", 0, [](BatchView view) { view.reward[2] = GetParam().reward; });
     if (MovesActor(finite)) expect_same(finite, "a step", kLargeSteps, [](BatchView) {});
     EXPECT_EQ(Record().operations, finite.operations) << "and it goes on";
   }
@@ -129,6 +130,13 @@ const Variant kVariants[] = {
        config->sac.actor_value = "mean";
        config->learner.actor_period = 2;
      }},
+    // Losses and gradients grow linearly with errors.
+    {"sac_quantiles",
+     [](Config* config) {
+       config->sac.quantiles = 5;
+       config->learner.learning_rate = 10;
+     },
+     3e38f},
     {"td3",
      [](Config* config) {
        config->learner.algorithm = "td3";
