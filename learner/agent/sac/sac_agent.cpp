@@ -185,7 +185,7 @@ void SacAgent::ComputeTargets(const Seen& seen, Random* random) {
                     .discount = float(config_.learner.discount),
                     .bounds = bounds_};
   if (quantiles_) {
-    const std::array no_value{quantiles_->zeros()};
+    const std::array no_value{quantiles_->zeros()};  // the quantiles are added to the rest
     terms.next_q = no_value;
     terms.bounds = {};
     engine_->Targets(terms, targets_);
