@@ -166,6 +166,16 @@ bool IsExperiment(const fs::path& folder) {
   return fs::is_regular_file(folder / kFile, error);
 }
 
+StoredExperiment WithArmsOf(const std::vector<ExperimentRun>& runs, StoredExperiment experiment) {
+  std::vector<Arm> arms;
+  for (size_t i = 0; i < experiment.definition.arms.size(); ++i) {
+    if (std::ranges::count(runs, i, &ExperimentRun::arm) == 0) continue;
+    arms.push_back(experiment.definition.arms[i]);
+  }
+  experiment.definition.arms = std::move(arms);
+  return experiment;
+}
+
 StoredExperiment ReadExperiment(const fs::path& folder) {
   const fs::path path = folder / kFile;
   if (!IsExperiment(folder)) {

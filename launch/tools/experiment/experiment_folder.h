@@ -52,6 +52,9 @@ struct StoredExperiment {
   RunLog Log() const { return RunLog(folder / "runs.jsonl"); }
 };
 
+// The experiment with only the arms of these runs.
+StoredExperiment WithArmsOf(const std::vector<ExperimentRun>& runs, StoredExperiment experiment);
+
 // Reads the experiment. Throws Error if experiment.json is missing or broken.
 StoredExperiment ReadExperiment(const std::filesystem::path& folder);
 

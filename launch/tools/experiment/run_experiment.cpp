@@ -99,9 +99,10 @@ void CheckObservations(const ExperimentPlan& plan) {
   }
 }
 
-// Returns false if a stop was requested before the last baseline.
-bool MeasureBaselines(const StoredExperiment& experiment) {
-  for (const JudgedWorld& world : JudgedWorlds(experiment)) {
+// Measures what these runs are compared with. Returns false if a stop was requested before the last
+// baseline.
+bool MeasureBaselines(const StoredExperiment& experiment, const std::vector<ExperimentRun>& runs) {
+  for (const JudgedWorld& world : JudgedWorlds(WithArmsOf(runs, experiment))) {
     if (!HasBaselines(world.config)) {
       Say(fmt::format("no baselines of {}: environments of Python have none", world.name));
       continue;
@@ -229,7 +230,7 @@ int RunExperiment(const ExperimentOptions& options) {
   const std::vector<ExperimentRun> runs = RunsAskedFor(experiment, options);
   Say(fmt::format("experiment {} in {}: {} runs; their output is in {}/logs", definition.name,
                   experiment.folder.string(), runs.size(), experiment.folder.string()));
-  if (!MeasureBaselines(experiment)) {
+  if (!MeasureBaselines(experiment, runs)) {
     Summarize(experiment);
     Say("stopped before the first run: the same command continues");
     return kInterruptedExit;

@@ -267,6 +267,11 @@ TEST_F(SummaryTest, EveryWorldHasItsBaselines) {
   for (const JudgedWorld& world : JudgedWorlds(worlds.experiment())) names.push_back(world.name);
   EXPECT_THAT(names,
               testing::ElementsAre("FetchReachDense", "wide", "FetchPush", "close", "FetchReach"));
+  const auto push_alone =
+      WithArmsOf({*worlds.experiment().RunNamed("push-s0")}, worlds.experiment());
+  names.clear();
+  for (const JudgedWorld& world : JudgedWorlds(push_alone)) names.push_back(world.name);
+  EXPECT_THAT(names, testing::ElementsAre("FetchPush", "FetchReach"));
   ExperimentOutcome outcome = ReadOutcome(worlds.experiment());
   outcome.baselines.clear();
   for (const JudgedWorld& world : JudgedWorlds(worlds.experiment())) {
