@@ -46,11 +46,20 @@ void EndRole(Supervisor& supervisor, std::string_view role, milliseconds deadlin
   WaitForExit(supervisor, role, kReapKilled, hooks, /*patient=*/false);
 }
 
-void WaitUntilSettled(Supervisor& supervisor, milliseconds deadline, const StopHooks& hooks) {
+void WaitUntilSettled(Supervisor& supervisor, const StopDeadlines& deadlines,
+                      const StopHooks& hooks) {
   const SteadyTime start = Now();
+  SteadyTime worked = start;
+  double work = hooks.work();
   while (!hooks.settled() && !hooks.at_once() && supervisor.Running("eval") > 0) {
     if (const auto failure = supervisor.Poll(Now())) return hooks.say(*failure);
-    if (Now() - start > deadline) return hooks.say("the last evaluation did not come in time");
+    if (const double done = hooks.work(); done != work) {
+      work = done;
+      worked = Now();
+    }
+    if (Now() - worked > deadlines.settle || Now() - start > deadlines.settle_in_all) {
+      return hooks.say("the last evaluation did not come in time");
+    }
     hooks.tick();
     SleepFor(kPoll);
   }
@@ -62,7 +71,7 @@ void StopInOrder(Supervisor& supervisor, const StopDeadlines& deadlines, const S
   supervisor.ExpectExit("actor");
   hooks.announce(RunState::kDraining);
   EndRole(supervisor, "actor", deadlines.drain, deadlines, hooks);
-  WaitUntilSettled(supervisor, deadlines.settle, hooks);
+  WaitUntilSettled(supervisor, deadlines, hooks);
   supervisor.ExpectExit("");
   hooks.announce(RunState::kStopping);
   EndRole(supervisor, "", deadlines.finish, deadlines, hooks);

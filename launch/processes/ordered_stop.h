@@ -12,10 +12,11 @@
 namespace shoal::launch {
 
 struct StopDeadlines {
-  std::chrono::milliseconds drain{30'000};     // for the actors, after kDraining
-  std::chrono::milliseconds settle{120'000};   // for `settled`, after the actors' exit
-  std::chrono::milliseconds finish{60'000};    // for the other processes, after kStopping
-  std::chrono::milliseconds terminate{5'000};  // after SIGTERM, before SIGKILL
+  std::chrono::milliseconds drain{30'000};             // for the actors, after kDraining
+  std::chrono::milliseconds settle{120'000};           // for `settled`, since `work` last changed
+  std::chrono::milliseconds settle_in_all{1'800'000};  // for `settled`, after the actors' exit
+  std::chrono::milliseconds finish{60'000};            // for the other processes, after kStopping
+  std::chrono::milliseconds terminate{5'000};          // after SIGTERM, before SIGKILL
 };
 
 struct StopHooks {
@@ -26,6 +27,9 @@ struct StopHooks {
   // After the actors have exited, the other processes continue until `settled` returns true (the
   // last evaluation has arrived).
   std::function<bool()> settled = [] { return true; };
+  // Work done so far (updates, evaluation). While it changes, the wait for `settled` continues: an
+  // evaluation of long episodes may take many minutes.
+  std::function<double()> work = [] { return 0.0; };
 };
 
 // Returns when no process runs any more, at the latest after the sum of the deadlines.

@@ -162,7 +162,13 @@ void Coordinator::Stop(RunEnd end) {
                .tick = [this] { Tick(); },
                .at_once = [stops] { return StopRequests() > stops; },
                .say = [this](const std::string& line) { progress_.Say(line); },
-               .settled = [this] { return decisions_.Settled(); }});
+               .settled = [this] { return decisions_.Settled(); },
+               .work =
+                   [this] {
+                     const MetricsView& view = watch_.view();
+                     return view.Total(RoleName(Role::kLearner), "updates") +
+                            view.Total(RoleName(Role::kEval), "seconds_evaluating");
+                   }});
   Tick(/*last=*/true);  // processes the last messages received
   Say(decisions_.OnEnded());
   evaluations_.End(Now());

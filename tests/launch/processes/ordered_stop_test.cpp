@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "common/base/files.h"
 #include "tests/launch/wait_until.h"
 #include "tests/support/temporary_folder.h"
@@ -116,6 +118,32 @@ TEST_F(OrderedStop, WaitsForTheLastEvaluationAfterTheActorsLeft) {
   };
   StopInOrder(supervisor_, kPatient, hooks);
   EXPECT_EQ(asked, 3);
+}
+
+// The evaluation takes several times as long as the wait without work.
+TEST_F(OrderedStop, WaitsForTheLastEvaluationWhileItIsPlayed) {
+  StartObedient("eval", "stopping");
+  StopHooks hooks = Hooks();
+  StopDeadlines deadlines;
+  deadlines.settle = milliseconds(400);
+  const SteadyTime start = Now();
+  hooks.work = [&] { return std::floor(SecondsSince(start) / 0.1); };
+  hooks.settled = [&] { return SecondsSince(start) > 1.5; };
+  StopInOrder(supervisor_, deadlines, hooks);
+  EXPECT_GT(SecondsSince(start), 1.5);
+  EXPECT_THAT(said_, IsEmpty());
+}
+
+TEST_F(OrderedStop, WorkThatNeverEndsIsNotAwaitedForEver) {
+  StartObedient("eval", "stopping");
+  StopHooks hooks = Hooks();
+  hooks.settled = [] { return false; };
+  hooks.work = [work = 0.0]() mutable { return ++work; };
+  StopDeadlines deadlines;
+  deadlines.settle_in_all = milliseconds(300);
+  StopInOrder(supervisor_, deadlines, hooks);
+  EXPECT_THAT(said_, ElementsAre(HasSubstr("did not come in time")));
+  EXPECT_EQ(supervisor_.Running(""), 0);
 }
 
 TEST_F(OrderedStop, DoesNotWaitForEverForTheLastEvaluation) {
