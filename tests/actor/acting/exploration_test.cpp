@@ -130,8 +130,8 @@ TEST(GaussianNoise, IsAddedToTheActionOfTheMean) {
 
 TEST(GaussianNoise, ActionsAreClippedToTheirBounds) {
   Player player(ConfigOf("gaussian", Schedule::Constant(3)));
-  std::vector<float> actions;
-  for (int i = 0; i < 100; ++i) actions.push_back(player.Act());
+  std::vector<float> actions(100);
+  for (float& action : actions) action = player.Act();
   EXPECT_THAT(actions, Each(AllOf(Ge(-1), Le(1))));
   EXPECT_THAT(actions, Contains(-1));
   EXPECT_THAT(actions, Contains(1));

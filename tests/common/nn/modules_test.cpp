@@ -162,7 +162,7 @@ TEST_P(ModulesTest, ACriticOfAnyNumberOfFunctionsTrainsTheEncoderByThoseInTheLos
     }
 
     // The last function alone is in the loss.
-    const Values dq = RandomValues(size_t(kRows * outputs), 6);
+    const Values dq = RandomValues(size_t(kRows) * size_t(outputs), 6);
     const std::vector<float> last = ToFloats(dq);
     auto gradients = std::vector<Array>(size_t(count));
     gradients.back() = HostArray(last);

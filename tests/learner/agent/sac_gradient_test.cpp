@@ -17,7 +17,6 @@
 namespace shoal::learner {
 namespace {
 
-using nn::CentralDifference;
 using nn::ToDoubles;
 using nn::reference::Network;
 using nn::reference::Values;
