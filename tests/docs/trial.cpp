@@ -86,6 +86,7 @@ const std::vector<TrialRule>& TrialRules() {
       {"--episodes [0-9]+", kSmaller, "--episodes 1"},
       {"shoal eval (?!.*--episodes)", kSmaller, "shoal eval --episodes 1 "},
       {"(shoal film [^#\n]*[^#\n ])", kSmaller, "$1 --episodes 1"},
+      {"(shoal env observability [^#\n]*) --samples [0-9]+", kSmaller, "$1"},
       {"(shoal env observability [^#\n]*) --updates [0-9]+", kSmaller, "$1"},
       {"(shoal env observability [^#\n]*[^#\n ])", kSmaller, "$1 --samples 100 --updates 2"},
       {"^cd build/release/bin$", kSmaller, ":"},
