@@ -26,7 +26,7 @@ ordered_json RunRow(int seed, const char* status, double return_mean = 0) {
 }
 
 // A summary of two arms with the rows of the first one.
-ordered_json SummaryWith(ordered_json rows) {
+ordered_json SummaryWith(const std::vector<ordered_json>& rows) {
   return {{"schema", "shoal-experiment-1"},
           {"name", "tasks"},
           {"base", "state"},
@@ -34,8 +34,10 @@ ordered_json SummaryWith(ordered_json rows) {
           {"n_to_target_rule", "together"},
           {"commit", "abc"},
           {"arms",
-           {{{"name", "a"}, {"overrides", {{"task", "x"}}}, {"runs", std::move(rows)}},
-            {{"name", "b"}, {"overrides", {{"task", "y"}}}, {"runs", {RunRow(0, "missing")}}}}},
+           {{{"name", "a"}, {"overrides", {{"task", "x"}}}, {"runs", rows}},
+            {{"name", "b"},
+             {"overrides", {{"task", "y"}}},
+             {"runs", std::vector{RunRow(0, "missing")}}}}},
           {"ratios", ordered_json::array()}};
 }
 
