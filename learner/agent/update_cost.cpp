@@ -7,6 +7,7 @@
 #include "common/config/on_policy.h"
 #include "common/nn/actor_critic_plan.h"
 #include "learner/agent/algorithms.h"
+#include "learner/agent/critic_outputs.h"
 #include "learner/agent/critic_vectors.h"
 
 namespace shoal::learner {
@@ -73,7 +74,7 @@ double OffPolicy(const Config& config, const ObservationSpec& spec, const Encode
       config.network, spec,
       LearnsDeviation(config) ? nn::ActorOutput::kGaussian : nn::ActorOutput::kDeterministic);
   const nn::HeadPlan critics = nn::PlanCritic(config.network, CriticSpec(config, spec), "critic",
-                                              critic_count, std::max(1, config.sac.quantiles));
+                                              critic_count, CriticOutputs(config));
   const double of_actor = MultiplyAdds(actor), of_critics = MultiplyAdds(critics);
   const bool separate = config.network.encoders == "separate";
   const bool asymmetric = bool(config.sac.critic_blocks);

@@ -26,10 +26,6 @@ ordered_json IdentityOf(const ordered_json& summary) {
   return identity;
 }
 
-bool HasStatus(const ordered_json& row, ExperimentRunStatus status) {
-  return row.at("status").get<std::string>() == ToString(status);
-}
-
 bool Ended(const ordered_json& row) {
   return HasStatus(row, ExperimentRunStatus::kFinished) ||
          HasStatus(row, ExperimentRunStatus::kFailed);

@@ -12,7 +12,6 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "launch/tools/experiment/arm_table.h"
-#include "launch/tools/experiment/experiment_run_status.h"
 #include "launch/tools/experiment/frames_table.h"
 #include "launch/tools/experiment/statistics_json.h"
 
@@ -27,16 +26,12 @@ std::optional<double> NumberOf(const ordered_json& row, const char* name) {
   return found->get<double>();
 }
 
-bool Stands(const ordered_json& row, ExperimentRunStatus standing) {
-  return row.at("status").get<std::string>() == ToString(standing);
-}
-
 SeedFigures RowFigures(const ordered_json& arm) {
   SeedFigures figures;
   for (const ordered_json& row : arm.at("runs")) {
-    if (Stands(row, ExperimentRunStatus::kFailed)) ++figures.failed;
+    if (HasStatus(row, ExperimentRunStatus::kFailed)) ++figures.failed;
     const auto return_mean = NumberOf(row, "return_mean");
-    if (!Stands(row, ExperimentRunStatus::kFinished) || !return_mean) continue;
+    if (!HasStatus(row, ExperimentRunStatus::kFinished) || !return_mean) continue;
     figures.Add(NumberOf(row, "success"), row.at("episodes").get<size_t>(), *return_mean,
                 NumberOf(row, "final_distance_mean"));
   }
@@ -46,8 +41,8 @@ SeedFigures RowFigures(const ordered_json& arm) {
 std::vector<TargetReached> RowTargets(const ordered_json& arm) {
   std::vector<TargetReached> targets;
   for (const ordered_json& row : arm.at("runs")) {
-    const bool over =
-        Stands(row, ExperimentRunStatus::kFinished) || Stands(row, ExperimentRunStatus::kFailed);
+    const bool over = HasStatus(row, ExperimentRunStatus::kFinished) ||
+                      HasStatus(row, ExperimentRunStatus::kFailed);
     targets.push_back({row.at("seed").get<int64_t>(), over, NumberOf(row, "n_to_target")});
   }
   return targets;
@@ -70,6 +65,10 @@ void NameFormerRule(ordered_json* summary) {
 }
 
 }  // namespace
+
+bool HasStatus(const ordered_json& row, ExperimentRunStatus status) {
+  return row.at("status").get<std::string>() == ToString(status);
+}
 
 void ComputeAggregates(ordered_json* summary) {
   if (!summary->contains("n_to_target_rule")) NameFormerRule(summary);

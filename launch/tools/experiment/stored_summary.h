@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "launch/tools/experiment/experiment_run_status.h"
+
 namespace shoal::launch {
 
 // Reads the object of a file. The aggregates (success, return, final_distance, at_frames,
@@ -14,6 +16,9 @@ namespace shoal::launch {
 // n_to_target_rule is then set to the rule of that build: two consecutive evaluations that both
 // reach the target. If the file is not a shoal-experiment-1 object, throws Error naming the file.
 nlohmann::ordered_json ReadStoredSummary(const std::filesystem::path& file);
+
+// Whether a row of a summary has this status.
+bool HasStatus(const nlohmann::ordered_json& row, ExperimentRunStatus status);
 
 // Computes the aggregates of a summary from its rows. Throws nlohmann's exceptions if members are
 // missing.

@@ -31,6 +31,7 @@
 #include "common/config/privileged_blocks.h"
 #include "common/nn/parallel.h"
 #include "learner/agent/agent_state.h"
+#include "learner/agent/critic_outputs.h"
 #include "learner/agent/critic_vectors.h"
 #include "learner/agent/figure_sheet.h"
 #include "learner/agent/pending_updates.h"
@@ -60,11 +61,11 @@ ActorValue ActorValueOf(const SacConfig& sac) {
 }
 
 // Arrays of the shape of each critic's values.
-std::vector<Array> NewGradients(const SacConfig& sac, Engine* engine) {
+std::vector<Array> NewGradients(const Config& config, Engine* engine) {
   std::vector<Array> arrays;
-  arrays.reserve(size_t(sac.critics));
-  for (int i = 0; i < sac.critics; ++i) {
-    arrays.push_back(engine->NewArray(SacNetworks::ValuesOfCritic(sac)));
+  arrays.reserve(size_t(config.sac.critics));
+  for (int i = 0; i < config.sac.critics; ++i) {
+    arrays.push_back(engine->NewArray(CriticOutputs(config)));
   }
   return arrays;
 }
@@ -145,7 +146,7 @@ SacAgent::SacAgent(const Config& config, const ObservationSpec& spec, Engine* en
       sample_{engine->NewArray(spec.action_size), engine->NewArray(spec.action_size),
               engine->NewArray(1)},
       targets_(engine->NewArray(1)),
-      q_gradients_(NewGradients(config.sac, engine)),
+      q_gradients_(NewGradients(config, engine)),
       action_gradient_(engine->NewArray(spec.action_size)),
       mean_gradient_(engine->NewArray(spec.action_size)),
       log_std_gradient_(engine->NewArray(spec.action_size)),

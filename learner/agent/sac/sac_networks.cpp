@@ -6,6 +6,7 @@
 
 #include "common/base/check.h"
 #include "common/nn/actor_critic_plan.h"
+#include "learner/agent/critic_outputs.h"
 #include "learner/agent/critic_vectors.h"
 #include "learner/agent/encoder_and_head.h"
 #include "learner/agent/step_sizes.h"
@@ -27,7 +28,7 @@ bool Separate(const Config& config) { return config.network.encoders == "separat
 
 nn::HeadPlan CriticPlan(const Config& config, const ObservationSpec& spec, const char* name) {
   return nn::PlanCritic(config.network, CriticSpec(config, spec), name, config.sac.critics,
-                        SacNetworks::ValuesOfCritic(config.sac));
+                        CriticOutputs(config));
 }
 
 std::vector<ParameterSet*> ParametersOf(const std::vector<Module*>& modules) {

@@ -22,7 +22,6 @@
 // that returned the result.
 #pragma once
 
-#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
@@ -50,9 +49,6 @@ class SacNetworks {
   SacNetworks(const Config& config, const ObservationSpec& spec, Engine* engine);
   SacNetworks(const SacNetworks&) = delete;
   SacNetworks& operator=(const SacNetworks&) = delete;
-
-  // Numbers that a critic computes for an action: a value, or its quantiles.
-  static int ValuesOfCritic(const SacConfig& sac) { return std::max(1, sac.quantiles); }
 
   // The next three functions encode frames (B, K*C, H, W). The forward functions read the features,
   // which stay valid until the next call. Without pixels, the three functions do nothing.
@@ -86,10 +82,9 @@ class SacNetworks {
   // AuxLoss::mean_square, the mean square error of the labels. CHECKs that sac.aux is set.
   Number ForwardBackwardAux(const Transitions& drawn);
 
-  // Computes the gradients of the critic and its encoder from dL/dq_i, of the shape of the values,
-  // of the latest
-  // ForwardCritic, which must follow the latest Encode. Also gathers the gradients; `squares`: see
-  // Engine::Gather.
+  // Computes the gradients of the critic and its encoder from dL/dq_i, of the shape of the Values
+  // of the latest ForwardCritic, which must follow the latest Encode. Also gathers the gradients;
+  // `squares`: see Engine::Gather.
   void BackwardCritic(std::span<const Array> q_gradients, Number squares);
   // Computes only dL/daction (B, A) of the latest ForwardCritic.
   void BackwardAction(std::span<const Array> q_gradients, Array action_gradient);
