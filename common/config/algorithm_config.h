@@ -19,11 +19,11 @@ struct SacConfig {
   double temperature_learning_rate = 0;  // 0 = learner.learning_rate
   double target_entropy = 0;             // 0 = target_entropy_per_action * (action size)
   double target_entropy_per_action = -1;
-  int critics = 2;                    // Q functions, each with a target
-  int target_critics = 0;             // targets drawn at random for each update; 0 = all
-  std::string actor_value = "min";    // min | mean: value of the critics in the actor's loss
-  int quantiles = 0;                  // quantiles of the return that a critic computes; 0 = its mean
-  int dropped_quantiles = 2;          // largest target quantiles left out, times `critics`
+  int critics = 2;                  // Q functions, each with a target
+  int target_critics = 0;           // targets drawn at random for each update; 0 = all
+  std::string actor_value = "min";  // min | mean: value of the critics in the actor's loss
+  int quantiles = 0;                // quantiles of the return that a critic computes; 0 = its mean
+  int dropped_quantiles = 2;        // largest target quantiles left out, times `critics`
   StateBlocks critic_blocks = false;  // the critic's inputs in place of pixels; false = pixels
   std::vector<std::string> aux;       // auxiliary regression targets: BLOCK, or BLOCK-BLOCK
   double aux_weight = 1;              // weight of the auxiliary loss

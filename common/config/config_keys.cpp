@@ -262,9 +262,10 @@ std::vector<Key> SacKeys() {
                 "mean = their mean"),
       SHOAL_KEY(sac.quantiles, (IntegerRange{0, 200}),
                 "quantiles of the return that each critic computes; 0 = only the mean"),
-      SHOAL_KEY(sac.dropped_quantiles, (IntegerRange{0, 199}),
-                "for sac.quantiles: this number, times sac.critics, of the largest quantiles of all "
-                "target critics are left out of the targets"),
+      SHOAL_KEY(
+          sac.dropped_quantiles, (IntegerRange{0, 199}),
+          "for sac.quantiles: this number, times sac.critics, of the largest quantiles of all "
+          "target critics are left out of the targets"),
       SHOAL_KEY(sac.critic_blocks, (AnyValue{}),
                 "recorded blocks that the critic gets instead of pixels, in addition to the "
                 "vectors that the policy observes: true = all, false = none (the critic gets the "
