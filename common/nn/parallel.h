@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <functional>
 
+#include "common/base/held_signals.h"
+
 namespace shoal::nn {
 
 // Number of threads of networks that the calling thread builds from now on; 1 before SetThreads.
@@ -14,6 +16,10 @@ int Threads();
 // Sets the pool's size for the calling thread during this object's lifetime. A network must run
 // with the same pool size as at its construction, because the primitives divide their work during
 // construction.
+//
+// Meanwhile signals wait for the calling thread, and for the threads of its pool always. The
+// products of oneDNN on processors without AVX-512 move the stack pointer into a buffer on the heap
+// (jit_avx_gemm_f32), and the frame of a signal handler would overwrite the memory before it.
 class ThreadScope {
  public:
   explicit ThreadScope(int threads);
@@ -22,6 +28,7 @@ class ThreadScope {
   ThreadScope& operator=(const ThreadScope&) = delete;
 
  private:
+  const HeldSignals held_;
   int former_;
 };
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "common/base/clock.h"
+#include "common/base/held_signals.h"
 #include "common/base/sleep.h"
 
 namespace shoal::python {
@@ -23,11 +24,8 @@ int64_t NowNs() { return Now().time_since_epoch().count(); }
 
 CallWatch::CallWatch(std::string environment, std::chrono::duration<double> limit)
     : environment_(std::move(environment)), limit_(limit), caller_(pthread_self()) {
-  sigset_t all, before;
-  sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, &before);  // the new thread must not handle signals
+  const HeldSignals held;  // the new thread must not handle signals
   thread_ = std::thread([this] { Watch(); });
-  pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
 CallWatch::~CallWatch() {
