@@ -62,4 +62,16 @@ struct Drqv2Config {
   double noise_clip = 0.3;
 };
 
+// A latent model that predicts `horizon` steps, and deterministic control in its latent state. The
+// defaults are the values of Fujimoto et al. 2025, arXiv:2501.16142.
+struct MrqConfig {
+  int horizon = 5;                      // steps that the model predicts in an update
+  int period = 250;                     // updates between copies of the trained networks
+  double encoder_learning_rate = 1e-4;  // of encoder and model
+  double reward_weight = 0.1;           // weight of the predicted rewards in the model's loss
+  double end_weight = 0.1;              // weight of the predicted ends of episodes
+  double target_noise = 0.2;            // standard deviation of the noise on a target's action
+  double target_noise_clip = 0.3;       // largest absolute value of this noise
+};
+
 }  // namespace shoal

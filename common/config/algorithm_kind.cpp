@@ -21,6 +21,10 @@ constexpr AlgorithmKind kKinds[] = {
      .priorities = true,
      .own_section = "drqv2.",
      .own_noise = [](const Config& config) -> const Schedule& { return config.drqv2.noise; }},
+    {.name = "mrq",
+     .priorities = true,
+     .own_section = "mrq.",
+     .horizon = [](const Config& config) { return config.mrq.horizon; }},
     {.name = "ppo", .on_policy = true, .own_section = "ppo."},
 };
 

@@ -28,6 +28,9 @@ struct AlgorithmKind {
   bool priorities = false;
   // Section of keys that only algorithms with this section accept: "ppo."; empty = no section.
   std::string_view own_section = "";
+  // Steps that follow each other in one sample of a batch (BatchOptions::horizon), its key
+  // "horizon"; null = samples without such steps.
+  int (*horizon)(const Config& config) = nullptr;
   // The algorithm's own deviation of the actors' noise, its key "noise"; null = exploration.sigma.
   const Schedule& (*own_noise)(const Config& config) = nullptr;
 };

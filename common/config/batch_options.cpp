@@ -5,6 +5,7 @@
 
 #include "common/config/priorities.h"
 #include "common/config/privileged_blocks.h"
+#include "common/config/sequences.h"
 
 namespace shoal {
 
@@ -16,6 +17,7 @@ BatchOptions BatchOptionsOf(const RunConfig& run) {
           .critic_shifts = run.config.replay.critic_shifts,
           .n_step = run.config.replay.n_step,
           .discount = run.config.learner.discount,
+          .horizon = HorizonOf(run.config),
           .probabilities = HasPriorities(run.config.replay),
           .privileged = std::move(privileged)};
 }

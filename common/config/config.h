@@ -131,11 +131,12 @@ struct NetworkConfig {
   // Keys of the compact encoder only; 0 and [] = the encoder's own values.
   int pool = 0;  // average pooling of the input; 1 = no pooling
   std::vector<int> filters, strides;
-  std::string trunk = "auto";                 // auto = the encoder's own | tanh | relu
+  std::string trunk = "auto";                 // auto = the encoder's own | tanh | relu | elu
   int features = 0;                           // outputs of the trunk; 0 = the encoder's own
+  std::vector<int> state_hidden;              // layers from observation to latent state (mrq)
   std::vector<int> hidden{256, 256};          // MLPs of actor and critics
   bool layer_norm = true;                     // after each hidden layer of the MLPs
-  std::string activation = "relu";            // relu | tanh: activation of the hidden layers
+  std::string activation = "relu";            // relu | tanh | elu: activation of the hidden layers
   std::string log_std = "smooth";             // smooth | clamped: method that bounds the deviation
   std::string initialisation = "orthogonal";  // orthogonal | pytorch
 };
@@ -192,6 +193,7 @@ struct Config {
   PpoConfig ppo;
   Td3Config td3;
   Drqv2Config drqv2;
+  MrqConfig mrq;
   ExplorationConfig exploration;
   NetworkConfig network;
   EvalConfig eval;

@@ -219,7 +219,7 @@ std::vector<Key> LearnerKeys() {
                 "updates per actor and temperature update"),
       SHOAL_KEY(learner.target_period, (IntegerRange{1, 100'000}), "updates per target update"),
       SHOAL_KEY(learner.mean_penalty, (RealRange{0, 1e6}),
-                "td3, ddpg, drqv2: weight, in the actor's loss, of the mean square of the policy's "
+                "td3, ddpg, drqv2, mrq: weight, in the actor's loss, of the mean square of the "
                 "outputs before tanh; it prevents actions from staying saturated"),
       SHOAL_KEY(learner.normalise_vectors, AnyValue{},
                 "scale vectors by their running mean and deviation, which are stored with the "
@@ -326,6 +326,24 @@ std::vector<Key> Td3Keys() {
   };
 }
 
+std::vector<Key> MrqKeys() {
+  const RealRange positive{0, 1, true};
+  return {
+      SHOAL_KEY(mrq.horizon, (IntegerRange{1, 20}), "steps that the model predicts in an update"),
+      SHOAL_KEY(mrq.period, (IntegerRange{1, 100'000}),
+                "updates after which policy and critics get a copy of the trained encoder, and the "
+                "targets one of policy, critics and encoder"),
+      SHOAL_KEY(mrq.encoder_learning_rate, positive, "learning rate of encoder and model"),
+      SHOAL_KEY(mrq.reward_weight, (RealRange{0, 1e3}),
+                "weight of the predicted rewards in the model's loss"),
+      SHOAL_KEY(mrq.end_weight, (RealRange{0, 1e3}),
+                "weight of the predicted ends of episodes in the model's loss"),
+      SHOAL_KEY(mrq.target_noise, (RealRange{0, 2}),
+                "standard deviation of the noise on a target's action; 0 = none"),
+      SHOAL_KEY(mrq.target_noise_clip, (RealRange{0, 2}), "largest absolute value of that noise"),
+  };
+}
+
 std::vector<Key> Drqv2Keys() {
   return {
       SHOAL_KEY(drqv2.noise, (RealRange{0, 2}),
@@ -380,14 +398,19 @@ std::vector<Key> NetworkKeys() {
       SHOAL_KEY(
           network.target_encoder, AnyValue{},
           "sac: the target critic has an encoder of its own, which follows the critic's encoder"),
-      SHOAL_KEY(network.trunk, (Choices{{"auto", "tanh", "relu"}}),
-                "over the feature map: tanh = linear, LayerNorm, tanh; relu = linear, ReLU; auto = "
-                "the encoder's own: relu of nature, else tanh"),
+      SHOAL_KEY(network.trunk, (Choices{{"auto", "tanh", "relu", "elu"}}),
+                "over the feature map: tanh = linear, LayerNorm, tanh; relu = linear, ReLU; elu = "
+                "linear, LayerNorm, ELU; auto = the encoder's own: relu of nature, else tanh"),
       SHOAL_KEY(network.features, (IntegerRange{0, 65'536}),
                 "outputs of the trunk; 0 = the encoder's own: 512 of nature, else 50"),
+      SHOAL_KEY(
+          network.state_hidden, (IntegerRange{1, 65'536}),
+          "mrq: layers with LayerNorm and ELU between trunk and vector and the latent state; [] "
+          "= the state is [trunk | vector]"),
       SHOAL_KEY(network.hidden, (IntegerRange{1, 65'536}), "hidden layers of actor and critics"),
       SHOAL_KEY(network.layer_norm, AnyValue{}, "LayerNorm after each hidden layer"),
-      SHOAL_KEY(network.activation, (Choices{{"relu", "tanh"}}), "activation of each hidden layer"),
+      SHOAL_KEY(network.activation, (Choices{{"relu", "tanh", "elu"}}),
+                "activation of each hidden layer"),
       SHOAL_KEY(network.log_std, (Choices{{"smooth", "clamped"}}),
                 "log deviation of a Gaussian policy: smooth = by tanh in [-5, 2]; clamped = "
                 "clipped to [-20, 2]"),
@@ -432,8 +455,8 @@ std::vector<Key> AllKeys() {
   std::vector<Key> all;
   for (const auto& section :
        {RunKeys(), EnvKeys(), ObservationKeys(), RandomizationKeys(), ReplayKeys(), LearnerKeys(),
-        SacKeys(), PpoKeys(), Td3Keys(), Drqv2Keys(), ExplorationKeys(), NetworkKeys(), EvalKeys(),
-        TransportKeys()}) {
+        SacKeys(), PpoKeys(), Td3Keys(), Drqv2Keys(), MrqKeys(), ExplorationKeys(), NetworkKeys(),
+        EvalKeys(), TransportKeys()}) {
     all.insert(all.end(), section.begin(), section.end());
   }
   return all;

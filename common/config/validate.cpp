@@ -9,6 +9,7 @@
 #include "common/config/exploration_kind.h"
 #include "common/config/on_policy.h"
 #include "common/config/priorities.h"
+#include "common/config/sequences.h"
 
 namespace shoal {
 namespace {
@@ -303,6 +304,7 @@ void ValidateReplay(const Config& config) {
 void Validate(const Config& config) {
   ValidateObservation(config.observation);
   ValidateOnPolicy(config);
+  ValidateSequences(config);
   ValidateVectors(config);
   ValidateExploration(config);
   ValidateCompact(config.network);

@@ -2,9 +2,11 @@
 #include "common/nn/actor_critic_plan.h"
 
 #include <numbers>
+#include <utility>
 
 #include "common/base/error.h"
 #include "common/nn/encoders/encoder_kind.h"
+#include "common/nn/mlp_plan.h"
 
 namespace shoal::nn {
 namespace {
@@ -29,48 +31,6 @@ int LeastSide(const EncoderKind& kind, const NetworkConfig& network, int channel
     }
   }
   return 0;
-}
-
-NetworkPlan PlanTrunk(const NetworkConfig& network, const ObservationSpec& spec,
-                      const std::string& head) {
-  if (!spec.HasPixels()) return {};
-  const EncoderKind& kind = FindEncoderKind(network.encoder);
-  const bool relu = network.trunk == "auto" ? kind.relu_trunk : network.trunk == "relu";
-  NetworkPlan trunk(PlanEncoder(network, spec).output());
-  trunk.Add(NetworkPlan::Linear{.name = head + ".trunk",
-                                .key = "network.features",
-                                .outputs = network.features == 0 ? kind.features : network.features,
-                                .layer_norm = !relu,
-                                .activation = relu ? Activation::kRelu : Activation::kTanh,
-                                .initialisation = InitialisationOf(network)});
-  return trunk;
-}
-
-// Gains of orthogonal weights.
-struct Gains {
-  double hidden = 1, output = 1;
-};
-
-NetworkPlan PlanMlp(const NetworkConfig& network, const std::string& name, int inputs, int outputs,
-                    const Gains& gains = {}) {
-  const Activation activation =
-      network.activation == "tanh" ? Activation::kTanh : Activation::kRelu;
-  NetworkPlan mlp({inputs});
-  for (size_t i = 0; i < network.hidden.size(); ++i) {
-    mlp.Add(NetworkPlan::Linear{.name = name + ".layer" + std::to_string(i),
-                                .key = "network.hidden",
-                                .outputs = network.hidden[i],
-                                .layer_norm = network.layer_norm,
-                                .activation = activation,
-                                .initialisation = InitialisationOf(network),
-                                .gain = gains.hidden});
-  }
-  mlp.Add(NetworkPlan::Linear{.name = name + ".output",
-                              .key = "network.hidden",
-                              .outputs = outputs,
-                              .initialisation = InitialisationOf(network),
-                              .gain = gains.output});
-  return mlp;
 }
 
 }  // namespace
@@ -108,8 +68,11 @@ ActorPlan PlanActor(const NetworkConfig& network, const ObservationSpec& spec, A
   plan.name = name;
   plan.log_std = network.log_std == "clamped" ? LogStd::kClamped : LogStd::kSmooth;
   const int outputs = (output == ActorOutput::kGaussian ? 2 : 1) * spec.action_size;
-  plan.mlps.push_back(
-      PlanMlp(network, name + ".mlp", plan.trunk_columns() + plan.vector_columns, outputs));
+  NetworkPlan mlp({plan.trunk_columns() + plan.vector_columns});
+  AddStateLayers(network, name + ".mlp", &mlp);
+  AddMlp(network, {.name = name + ".mlp", .first = int(network.state_hidden.size())}, outputs,
+         &mlp);
+  plan.mlps.push_back(std::move(mlp));
   return plan;
 }
 
@@ -122,8 +85,11 @@ std::vector<ParameterSpec> ActorPlan::Parameters() const {
 HeadPlan PlanObservationHead(const NetworkConfig& network, const ObservationSpec& spec,
                              const std::string& name, int outputs, double output_gain) {
   HeadPlan plan{.trunk = PlanTrunk(network, spec, name), .vector_columns = spec.VectorSize()};
-  plan.mlps.push_back(PlanMlp(network, name + ".mlp", plan.trunk_columns() + plan.vector_columns,
-                              outputs, {.hidden = std::numbers::sqrt2, .output = output_gain}));
+  NetworkPlan mlp({plan.trunk_columns() + plan.vector_columns});
+  AddMlp(network,
+         {.name = name + ".mlp", .hidden_gain = std::numbers::sqrt2, .output_gain = output_gain},
+         outputs, &mlp);
+  plan.mlps.push_back(std::move(mlp));
   return plan;
 }
 
@@ -134,7 +100,9 @@ HeadPlan PlanCritic(const NetworkConfig& network, const ObservationSpec& spec,
                 .extra_columns = spec.action_size};
   const int inputs = plan.trunk_columns() + plan.vector_columns + plan.extra_columns;
   for (int i = 1; i <= count; ++i) {
-    plan.mlps.push_back(PlanMlp(network, name + ".q" + std::to_string(i), inputs, outputs));
+    NetworkPlan mlp({inputs});
+    AddMlp(network, {.name = name + ".q" + std::to_string(i)}, outputs, &mlp);
+    plan.mlps.push_back(std::move(mlp));
   }
   return plan;
 }

@@ -12,6 +12,7 @@
 //   HEAD.log_std (A)                                                 unsquashed actor only
 //
 // HEAD is an actor or a critic. MLP is HEAD.mlp in an actor and HEAD.q1, HEAD.q2, ... in a critic.
+// The layers of network.state_hidden are the first layers of an actor's MLP.
 // A policy consists of the encoder "encoder" and the actor "actor". The trunk has norm.* if it has
 // a LayerNorm; the layers of an MLP have norm.* if network.layer_norm is set.
 #pragma once

@@ -253,7 +253,11 @@ void Adam::Import(const TensorMap& tensors, const std::string& group, const std:
 void MoveTowards(float tau, const float* online, int64_t n, float* target) {
   ParallelFor(Blocks(n), [&](int begin, int end) {
     const int64_t first = int64_t(begin) * kBlock, last = std::min(n, int64_t(end) * kBlock);
-    MoveRange(tau, online + first, last - first, target + first);
+    if (tau == 1) {  // without the rounding of the difference
+      std::copy(online + first, online + last, target + first);
+    } else {
+      MoveRange(tau, online + first, last - first, target + first);
+    }
   });
 }
 

@@ -29,10 +29,18 @@ void DenseLayer::Forward() {
                      {norm_weight_.value(), norm_bias_.value()}, normalised_.data(), scales_.data(),
                      y);
   }
-  if (activation_ == Activation::kTanh) {
-    TanhForward(output.size(), y, y);
-  } else {
-    ReluForward(output.size(), y, y);
+  switch (activation_) {
+    case Activation::kNone:
+      break;
+    case Activation::kRelu:
+      ReluForward(output.size(), y, y);
+      break;
+    case Activation::kTanh:
+      TanhForward(output.size(), y, y);
+      break;
+    case Activation::kElu:
+      EluForward(output.size(), y, y);
+      break;
   }
   output.Commit();
 }
@@ -40,10 +48,18 @@ void DenseLayer::Forward() {
 void DenseLayer::Backward(Gradients wanted) {
   const Rows& output = linear_.output();
   float* gradient = linear_.output_gradient().values();
-  if (activation_ == Activation::kTanh) {
-    TanhBackward(output.size(), output.values(), gradient, gradient);
-  } else {
-    ReluBackward(output.size(), output.values(), gradient, gradient);
+  switch (activation_) {
+    case Activation::kNone:
+      break;
+    case Activation::kRelu:
+      ReluBackward(output.size(), output.values(), gradient, gradient);
+      break;
+    case Activation::kTanh:
+      TanhBackward(output.size(), output.values(), gradient, gradient);
+      break;
+    case Activation::kElu:
+      EluBackward(output.size(), output.values(), gradient, gradient);
+      break;
   }
   if (has_norm_) {
     const RowShape shape{output.batch(), output.columns()};

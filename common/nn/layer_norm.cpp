@@ -108,6 +108,15 @@ SHOAL_CPU_CLONES void ReluBackward(int n, const float* y, const float* dy, float
   for (int i = 0; i < n; ++i) dx[i] = y[i] > 0 ? dy[i] : 0.f;
 }
 
+void EluForward(int n, const float* x, float* y) {
+  const Eigen::Map<const Eigen::ArrayXf> in(x, n);
+  Eigen::Map<Eigen::ArrayXf>(y, n) = (in > 0).select(in, in.min(0.f).exp() - 1.f);
+}
+
+SHOAL_CPU_CLONES void EluBackward(int n, const float* y, const float* dy, float* dx) {
+  for (int i = 0; i < n; ++i) dx[i] = y[i] > 0 ? dy[i] : dy[i] * (y[i] + 1.f);
+}
+
 void TanhForward(int n, const float* x, float* y) {
   Eigen::Map<Eigen::ArrayXf>(y, n) = Eigen::Map<const Eigen::ArrayXf>(x, n).tanh();
 }

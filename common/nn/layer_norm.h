@@ -46,6 +46,11 @@ void ReluForward(int n, const float* x, float* y);
 // dx = dy where y > 0, else 0. dx may be dy.
 void ReluBackward(int n, const float* y, const float* dy, float* dx);
 
+// y = x where x > 0, else exp(x) - 1; y may be x. Absolute error below 1e-6.
+void EluForward(int n, const float* x, float* y);
+// dx = dy where y > 0, else dy * (y + 1). dx may be dy.
+void EluBackward(int n, const float* y, const float* dy, float* dx);
+
 // y = tanh(x); y may be x. Absolute error below 1e-6.
 void TanhForward(int n, const float* x, float* y);
 // dx = dy * (1 - y^2). dx may be dy.

@@ -53,7 +53,7 @@ inline constexpr std::string_view kRunningMean = ".running_mean", kRunningVarian
 // biases of norms at 0.
 enum class Initialisation { kOrthogonal, kPyTorch, kKaiming };
 
-enum class Activation { kNone, kRelu, kTanh };
+enum class Activation { kNone, kRelu, kTanh, kElu };
 
 struct MapShape {
   int channels = 0, height = 1, width = 1;

@@ -32,6 +32,8 @@ const char* ActivationName(Activation activation) {
       return ", relu";
     case Activation::kTanh:
       return ", tanh";
+    case Activation::kElu:
+      return ", elu";
   }
   return "";
 }

@@ -66,11 +66,25 @@ BatchSchema::BatchSchema(const ObservationSpec& spec, const BatchOptions& option
   Add("weights_update", ArrayType::kU64);
   Add("id", ArrayType::kU64);
   if (options.probabilities) Add("probability", ArrayType::kF32);
+  for (int h = 1; h <= options.horizon; ++h) AddStep(spec, "step" + std::to_string(h) + ".");
   if (!options.rollout) return;
   Add("drawn_action", ArrayType::kF32, {spec.action_size});
   Add("log_prob", ArrayType::kF32);
   Add("ends", ArrayType::kF32);
   Add("continues", ArrayType::kF32);
+}
+
+void BatchSchema::AddStep(const ObservationSpec& spec, const std::string& prefix) {
+  if (spec.HasPixels()) {
+    Add(prefix + "next_frames", ArrayType::kU8, {spec.InputChannels(), spec.height, spec.width});
+  }
+  if (const int size = spec.VectorSize(); size > 0) {
+    Add(prefix + "next_vector", ArrayType::kF32, {size});
+  }
+  Add(prefix + "action", ArrayType::kF32, {spec.action_size});
+  for (const char* name : {"reward", "terminated", "present"}) {
+    Add(prefix + name, ArrayType::kF32);
+  }
 }
 
 void BatchSchema::Add(const std::string& name, ArrayType type, std::vector<int> shape) {
@@ -131,6 +145,7 @@ BatchView BatchSchema::View(uint8_t* data, uint64_t stored_steps) const {
   view.stored_steps = stored_steps;
   view.schema = this;
   view.data = data;
+  view.steps.resize(static_cast<size_t>(options_.horizon));
   VisitArrays(view, [&]<class T>(const char* name, std::span<T>& member) {
     if (Has(name)) member = Array<T>(name, data);
   });

@@ -19,6 +19,17 @@
 //   probability      (B) f32             probability of the sample in one draw; only with
 //                                        BatchOptions::probabilities
 //
+// Arrays of step h = 1 .. H of a sample's sequence, only with BatchOptions::horizon. Step 1 is the
+// step of `action`:
+//
+//   step{h}.next_frames  (B, K*C, H, W) u8   observation after the step, shifted by own offsets
+//   step{h}.next_vector  (B, V) f32
+//   step{h}.action       (B, A) f32
+//   step{h}.reward       (B) f32             reward of this step alone
+//   step{h}.terminated   (B) f32             1: this step ended the task; else 0
+//   step{h}.present      (B) f32             0: the sequence ended before, and the other numbers of
+//                                            this step are 0; else 1
+//
 // Arrays of a rollout (on policy). The rows are the steps of one environment in order, then the
 // steps of the next environment. Frames are not shifted, and next_obs_* are filled in only if
 // `continues` is 0:
@@ -34,8 +45,7 @@
 // the first dimension of all arrays. If the spec or the options have no pixels, no vectors or no
 // privileged blocks, the batch has no array for them.
 //
-// A new algorithm or sampler may need more arrays, such as sequences (the length of a sequence is
-// the first dimension of an element). In this case, add an option and its arrays.
+// If a new algorithm or sampler needs more arrays, add an option and its arrays.
 #pragma once
 
 #include <cstddef>
@@ -68,6 +78,7 @@ struct BatchOptions {
   int critic_shifts = 0;       // number of copies with their own shift of obs; 0 = all
   int n_step = 1;              // n
   double discount = 1;         // discount between the n summed steps
+  int horizon = 0;             // steps of the sequence of each sample; 0 = no sequences
   bool rollout = false;        // rows are steps in order, with the arrays of a rollout
   bool probabilities = false;  // with the probabilities of the samples
   // Privileged inputs: names of blocks that the policy does not observe, in any order.
@@ -100,6 +111,7 @@ class BatchSchema {
   BatchView View(uint8_t* data, uint64_t stored_steps = 0) const;
 
  private:
+  void AddStep(const ObservationSpec& spec, const std::string& prefix);
   void Add(const std::string& name, ArrayType type, std::vector<int> shape = {});
   // Position of the array in arrays_; arrays_.size() if there is no such array.
   size_t Find(std::string_view name) const;
@@ -108,6 +120,12 @@ class BatchSchema {
   std::vector<BatchArray> arrays_;
   std::vector<uint64_t> offsets_, sizes_;  // bytes, by array; sizes without padding
   uint64_t total_bytes_ = 0;
+};
+
+// One step of the sequences of a batch.
+struct StepView {
+  std::span<uint8_t> next_frames;
+  std::span<float> next_vector, action, reward, terminated, present;
 };
 
 // View of a batch. The arrays that most algorithms use are members; a member is empty if the batch
@@ -120,6 +138,7 @@ struct BatchView {
   std::span<uint64_t> weights_update, id;
   std::span<float> probability;
   std::span<float> drawn_action, log_prob, ends, continues;  // rollouts only
+  std::vector<StepView> steps;                               // as many as BatchOptions::horizon
   uint64_t stored_steps = 0;  // the run's env steps when the batch was drawn, for schedules
 
   size_t rows() const { return reward.size(); }
@@ -156,6 +175,16 @@ void VisitArrays(View& view, Visit visit) {
   visit("log_prob", view.log_prob);
   visit("ends", view.ends);
   visit("continues", view.continues);
+  int h = 0;
+  for (auto& step : view.steps) {
+    const std::string prefix = "step" + std::to_string(++h) + ".";
+    visit((prefix + "next_frames").c_str(), step.next_frames);
+    visit((prefix + "next_vector").c_str(), step.next_vector);
+    visit((prefix + "action").c_str(), step.action);
+    visit((prefix + "reward").c_str(), step.reward);
+    visit((prefix + "terminated").c_str(), step.terminated);
+    visit((prefix + "present").c_str(), step.present);
+  }
 }
 
 }  // namespace shoal

@@ -13,6 +13,7 @@
 #include "learner/agent/ddpg/ddpg_agent.h"
 #include "learner/agent/drqv2/drqv2_agent.h"
 #include "learner/agent/frame_figures.h"
+#include "learner/agent/mrq/mrq_agent.h"
 #include "learner/agent/ppo/ppo_agent.h"
 #include "learner/agent/replicated_agent.h"
 #include "learner/agent/sac/sac_agent.h"
@@ -36,6 +37,11 @@ constexpr Algorithm kAlgorithms[] = {
      .sb3 = "DDPG",
      .make = MakeDdpgAgent},
     {.name = "drqv2", .figures = kTwinFigures, .critics = 2, .sb3 = "TD3", .make = MakeDrqv2Agent},
+    {.name = "mrq",
+     .figures = kMrqFigures,
+     .critics = 2,
+     .make = MakeMrqAgent,
+     .on_devices = false},
     {.name = "ppo",
      .figures = kPpoFigures,
      .sb3 = "PPO",

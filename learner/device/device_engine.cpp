@@ -174,6 +174,7 @@ void DeviceEngine::SetHostNumbers() {
 }
 
 Transitions DeviceEngine::Take(const BatchView& batch) {
+  CHECK(batch.steps.empty()) << "sequences are computed on the CPU";
   BatchPlaces places(batch, &landing());
   return {.obs_frames = places.Of(batch.obs_frames),
           .next_obs_frames = places.Of(batch.next_obs_frames),

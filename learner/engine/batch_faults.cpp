@@ -23,7 +23,10 @@ bool AllFinite(const BatchView& batch) {
          AreFinite(std::span<const float>(batch.reward)) &&
          AreFinite(std::span<const float>(batch.bootstrap)) &&
          AreFinite(std::span<const float>(batch.drawn_action)) &&
-         AreFinite(std::span<const float>(batch.log_prob));
+         AreFinite(std::span<const float>(batch.log_prob)) &&
+         std::ranges::all_of(batch.steps, [](const StepView& step) {
+           return AreFinite(step.next_vector) && AreFinite(step.action) && AreFinite(step.reward);
+         });
 }
 
 bool FitsMoments(double gradient_squares) {

@@ -89,6 +89,15 @@ Array CpuEngine::TakeRows(std::span<float> values) {
 
 Transitions CpuEngine::Take(const BatchView& batch) {
   const BatchView own = PartOf(batch, replica_->RowsOf(batch_));
+  std::vector<Transitions::Step> steps;
+  for (const StepView& step : own.steps) {
+    steps.push_back({.next_frames = HostArray(step.next_frames),
+                     .next_vector = HostArray(step.next_vector),
+                     .action = HostArray(step.action),
+                     .reward = HostArray(step.reward),
+                     .terminated = HostArray(step.terminated),
+                     .present = HostArray(step.present)});
+  }
   return {.obs_frames = HostArray(own.obs_frames),
           .next_obs_frames = HostArray(own.next_obs_frames),
           .obs_vector = HostArray(own.obs_vector),
@@ -99,7 +108,8 @@ Transitions CpuEngine::Take(const BatchView& batch) {
           .reward = HostArray(own.reward),
           .bootstrap = HostArray(own.bootstrap),
           .drawn_action = HostArray(own.drawn_action),
-          .log_prob = HostArray(own.log_prob)};
+          .log_prob = HostArray(own.log_prob),
+          .steps = std::move(steps)};
 }
 
 std::optional<Engine::Outcome> CpuEngine::End() {

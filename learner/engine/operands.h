@@ -4,6 +4,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "common/base/random.h"
 #include "common/nn/array.h"
@@ -23,6 +24,12 @@ struct Transitions {
   Array obs_vector, next_obs_vector, obs_privileged, next_obs_privileged;
   Array action, reward, bootstrap;
   Array drawn_action, log_prob;  // rollouts only
+  // The steps of the rows' sequences (BatchOptions::horizon), with the arrays of batch_schema.h.
+  struct Step {
+    Frames next_frames;
+    Array next_vector, action, reward, terminated, present;
+  };
+  std::vector<Step> steps{};
 };
 
 // Actions of a Gaussian squashed by tanh, and the values that their gradients need.

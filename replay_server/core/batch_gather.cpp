@@ -39,6 +39,9 @@ std::optional<BatchPlan> DrawPlan(const PlanOptions& options, Selector* selector
                              .goal = goal,
                              .obs = obs,
                              .next_obs = next_obs});
+    for (int h = 0; h < options.horizon; ++h) {
+      plan.elements.back().steps.push_back(DrawShift(options.shift_pad, random));
+    }
   }
   return plan;
 }
@@ -83,24 +86,27 @@ std::span<const float> BatchGather::GoalOf(const BatchPlan::Element& element) co
   return goals_->Achieved(ring_.Record(element.goal));
 }
 
+float BatchGather::Reward(uint64_t id, std::span<const float> goal) const {
+  return goal.empty() ? ring_.Header(id).reward : goals_->Reward(ring_.Record(id), goal);
+}
+
+bool BatchGather::Terminated(uint64_t id, std::span<const float> goal) const {
+  return goal.empty() ? (ring_.Header(id).flags & kTerminated) != 0
+                      : goals_->Terminated(ring_.Record(id), goal);
+}
+
 BatchGather::Returns BatchGather::SumRewards(uint64_t first, std::span<const float> goal) const {
-  const auto earned = [&](uint64_t id) {
-    return goal.empty() ? ring_.Header(id).reward : goals_->Reward(ring_.Record(id), goal);
-  };
-  const auto terminated = [&](uint64_t id) {
-    return goal.empty() ? (ring_.Header(id).flags & kTerminated) != 0
-                        : goals_->Terminated(ring_.Record(id), goal);
-  };
   uint64_t last = first;
-  double reward = earned(first), discount = 1;
+  double reward = Reward(first, goal), discount = 1;
   // An episode that success ended would have continued under another goal, but no later step is
   // stored. Its last samples then sum fewer than n rewards and bootstrap after these.
-  for (int k = 1; k < n_step_.steps && !terminated(last) && index_.Next(last) != 0; ++k) {
+  for (int k = 1; k < n_step_.steps && !Terminated(last, goal) && index_.Next(last) != 0; ++k) {
     last = index_.Next(last);
     discount *= n_step_.discount;
-    reward += discount * earned(last);
+    reward += discount * Reward(last, goal);
   }
-  return {last, static_cast<float>(reward), terminated(last) ? 0.0f : static_cast<float>(discount)};
+  const float bootstrap = Terminated(last, goal) ? 0.0f : static_cast<float>(discount);
+  return {last, static_cast<float>(reward), bootstrap};
 }
 
 void BatchGather::AddFrame(uint64_t id, Shift shift, uint8_t* out, FrameCopies* copies) const {
@@ -118,33 +124,55 @@ void BatchGather::AddStack(uint64_t id, Shift shift, uint8_t* out, FrameCopies* 
   }
 }
 
-void BatchGather::AddPictures(const BatchPlan::Element& element, uint64_t last, uint8_t* obs,
-                              uint8_t* next_obs, FrameCopies* copies) const {
-  AddStack(ring_.Slot(element.id).prev, element.obs, obs, copies);
-  AddStack(last, element.next_obs, next_obs, copies);
+void BatchGather::AddPictures(const BatchPlan::Element& element, uint64_t id, Shift shift,
+                              size_t row, std::span<uint8_t> frames, FrameCopies* copies) const {
+  if (frames.empty()) return;
+  uint8_t* out = frames.data() + row * InputBytes();
+  AddStack(id, shift, out, copies);
   if (!goal_pictures_) return;
   const uint64_t shown = element.goal != 0 ? element.goal : index_.GoalRecord(element.id);
-  const ptrdiff_t behind = ptrdiff_t{stack_} * ring_.layout().frame_bytes();
-  AddFrame(shown, element.obs, obs + behind, copies);
-  AddFrame(shown, element.next_obs, next_obs + behind, copies);
+  AddFrame(shown, shift, out + ptrdiff_t{stack_} * ring_.layout().frame_bytes(), copies);
 }
 
-void BatchGather::GatherVectors(const BatchPlan::Element& element, uint64_t last,
-                                std::span<const float> goal, size_t row,
-                                const BatchView& out) const {
-  const RecordLayout& layout = ring_.layout();
-  const auto gather = [&](uint64_t id, std::span<float> vectors, std::span<float> privileged) {
-    const auto part = [row](std::span<float> all, int size) {
-      return all.subspan(row * static_cast<size_t>(size), static_cast<size_t>(size));
-    };
-    const std::span<const float> recorded = layout.Vector(ring_.Record(id));
-    const auto seen = part(vectors, observed_.size()), known = part(privileged, privileged_.size());
-    observed_.Copy(recorded, seen);
-    if (privileged_.size() > 0) privileged_.Copy(recorded, known);
-    if (!goal.empty()) goals_->WriteGoal(goal, seen, known);
+void BatchGather::GatherVectors(uint64_t id, std::span<const float> goal, size_t row,
+                                std::span<float> vectors, std::span<float> privileged) const {
+  const auto part = [row](std::span<float> all, int size) {
+    return all.subspan(row * static_cast<size_t>(size), static_cast<size_t>(size));
   };
-  gather(ring_.Slot(element.id).prev, out.obs_vector, out.obs_privileged);
-  gather(last, out.next_obs_vector, out.next_obs_privileged);
+  const std::span<const float> recorded = ring_.layout().Vector(ring_.Record(id));
+  const auto seen = part(vectors, observed_.size());
+  const auto known = privileged.empty() ? privileged : part(privileged, privileged_.size());
+  observed_.Copy(recorded, seen);
+  if (!known.empty()) privileged_.Copy(recorded, known);
+  if (!goal.empty()) goals_->WriteGoal(goal, seen, known);
+}
+
+void BatchGather::GatherSteps(const BatchPlan::Element& element, std::span<const float> goal,
+                              size_t row, const BatchView& out, FrameCopies* copies) const {
+  CHECK(element.steps.size() >= out.steps.size()) << element.steps.size() << " shifts";
+  uint64_t id = element.id;  // 0: the sequence has ended
+  for (size_t h = 0; h < out.steps.size(); ++h) {
+    const StepView& step = out.steps[h];
+    const auto row_of = [&](auto array) {
+      const size_t size = array.size() / out.rows();
+      return array.subspan(row * size, size);
+    };
+    step.present[row] = id != 0 ? 1 : 0;
+    step.reward[row] = step.terminated[row] = 0;
+    if (id == 0) {
+      std::ranges::fill(row_of(step.next_frames), uint8_t{0});
+      std::ranges::fill(row_of(step.next_vector), 0.f);
+      std::ranges::fill(row_of(step.action), 0.f);
+      continue;
+    }
+    const bool terminated = Terminated(id, goal);
+    step.reward[row] = Reward(id, goal);
+    step.terminated[row] = terminated ? 1 : 0;
+    std::ranges::copy(ring_.layout().Action(ring_.Record(id)), row_of(step.action).begin());
+    AddPictures(element, id, element.steps[h], row, step.next_frames, copies);
+    GatherVectors(id, goal, row, step.next_vector, {});
+    id = terminated ? 0 : index_.Next(id);
+  }
 }
 
 size_t BatchGather::InputBytes() const {
@@ -168,7 +196,8 @@ FrameCopies BatchGather::GatherAllButFrames(const BatchPlan& plan, const BatchVi
   const auto action_size = static_cast<size_t>(layout.action_size());
   FrameCopies copies{.copies = {}, .channels = channels_, .height = height_, .width = width_};
   if (input_bytes > 0) {
-    copies.copies.reserve(2 * batch * static_cast<size_t>(stack_ + (goal_pictures_ ? 1 : 0)));
+    copies.copies.reserve((2 + out.steps.size()) * batch *
+                          static_cast<size_t>(stack_ + (goal_pictures_ ? 1 : 0)));
   }
   for (size_t b = 0; b < batch; ++b) {
     const BatchPlan::Element& element = plan.elements[b];
@@ -177,11 +206,12 @@ FrameCopies BatchGather::GatherAllButFrames(const BatchPlan& plan, const BatchVi
     const uint8_t* first = ring_.Record(element.id);
     CHECK(RecordLayout::Header(first).kind == RecordKind::kStep && ring_.Slot(element.id).prev != 0)
         << "record " << element.id;
-    if (input_bytes > 0) {
-      AddPictures(element, returns.last, out.obs_frames.data() + b * input_bytes,
-                  out.next_obs_frames.data() + b * input_bytes, &copies);
-    }
-    GatherVectors(element, returns.last, goal, b, out);
+    const uint64_t before = ring_.Slot(element.id).prev;
+    AddPictures(element, before, element.obs, b, out.obs_frames, &copies);
+    AddPictures(element, returns.last, element.next_obs, b, out.next_obs_frames, &copies);
+    GatherVectors(before, goal, b, out.obs_vector, out.obs_privileged);
+    GatherVectors(returns.last, goal, b, out.next_obs_vector, out.next_obs_privileged);
+    GatherSteps(element, goal, b, out, &copies);
     std::ranges::copy(layout.Action(first), out.action.data() + b * action_size);
     out.reward[b] = returns.reward;
     out.bootstrap[b] = returns.bootstrap;

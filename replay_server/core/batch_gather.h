@@ -23,6 +23,10 @@
 // the step that reaches the new goal. If the episode reached its own goal after fewer than n steps,
 // the sample ends with the episode: m < n, and the target bootstraps.
 //
+// If the batch has sequences, step h of a sample is the h-th step from its first step on, whatever
+// m is, and its observation afterwards is shifted by offsets of its own. A step that terminates the
+// sample's episode is the last step of the sequence, and so is the last stored step.
+//
 // Dimensions: B batch, K frames of a stack, C channels of a frame, (H, W) height and width, I input
 // channels (K*C, or (K+1)*C with goal pictures).
 #pragma once
@@ -51,6 +55,7 @@ struct BatchPlan {
     double probability = 0;  // probability of the draw
     uint64_t goal = 0;       // record whose achieved goal replaces the goal; 0 = not relabelled
     Shift obs, next_obs;
+    std::vector<Shift> steps{};  // of the observation after each step of a sequence
   };
   std::vector<Element> elements;  // B
 };
@@ -60,6 +65,7 @@ struct PlanOptions {
   int copies = 1;         // consecutive elements with the same step; divides B
   int target_shifts = 0;  // different shifts of next_obs in a group of copies; 0 = copies
   int critic_shifts = 0;  // different shifts of obs in a group of copies; 0 = copies
+  int horizon = 0;        // steps of a sequence
   int shift_pad = 0;      // pixels
 };
 
@@ -118,6 +124,9 @@ class BatchGather {
   size_t InputBytes() const;  // bytes of one observation's pictures
   // The goal of a relabelled element; empty for other elements.
   std::span<const float> GoalOf(const BatchPlan::Element& element) const;
+  // Reward and end of a step; `goal` empty: those of the record.
+  float Reward(uint64_t id, std::span<const float> goal) const;
+  bool Terminated(uint64_t id, std::span<const float> goal) const;
   // The last step of a sample, its reward and its bootstrap.
   struct Returns {
     uint64_t last;
@@ -127,12 +136,16 @@ class BatchGather {
   void AddFrame(uint64_t id, Shift shift, uint8_t* out, FrameCopies* copies) const;
   // Adds the copies of the stack of K frames that ends at record `id` to `out` (K*C, H, W).
   void AddStack(uint64_t id, Shift shift, uint8_t* out, FrameCopies* copies) const;
-  // Adds the copies of the two observations of an element whose last step is `last`: stacks and
-  // goal pictures (I, H, W).
-  void AddPictures(const BatchPlan::Element& element, uint64_t last, uint8_t* obs,
-                   uint8_t* next_obs, FrameCopies* copies) const;
-  void GatherVectors(const BatchPlan::Element& element, uint64_t last, std::span<const float> goal,
-                     size_t row, const BatchView& out) const;
+  // Adds the copies of one observation of an element, the stack that ends at record `id` and the
+  // goal picture (I, H, W), to row `row` of `frames`.
+  void AddPictures(const BatchPlan::Element& element, uint64_t id, Shift shift, size_t row,
+                   std::span<uint8_t> frames, FrameCopies* copies) const;
+  // Writes the vectors of record `id` to row `row`.
+  void GatherVectors(uint64_t id, std::span<const float> goal, size_t row, std::span<float> vectors,
+                     std::span<float> privileged) const;
+  // Fills in row `row` of the steps of a sequence.
+  void GatherSteps(const BatchPlan::Element& element, std::span<const float> goal, size_t row,
+                   const BatchView& out, FrameCopies* copies) const;
 
   const Ring& ring_;
   const EpisodeIndex& index_;

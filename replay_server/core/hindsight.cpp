@@ -5,6 +5,7 @@
 
 #include "common/base/check.h"
 #include "common/base/error.h"
+#include "common/config/sequences.h"
 #include "common/tasks/task_registry.h"
 
 namespace shoal::replay {
@@ -80,10 +81,10 @@ void CheckCapacity(const RunConfig& run, const tasks::Task& task) {
   const Config& config = run.config;
   const std::string& kind = config.replay.hindsight;
   const int64_t steps = task.EnvStepsPerEpisode(task.ActionRepeat(config.action_repeat));
-  const int64_t usable = steps - (config.replay.n_step - 1);  // steps with n - 1 more after them
+  const int64_t usable = steps - (SampleStepsOf(config) - 1);  // first steps of samples
   if (usable <= 0) {
-    throw UsageError("replay.n_step = {}: an episode of {} has {} steps; expected at most that",
-                     config.replay.n_step, task.name(), steps);
+    throw UsageError("{}: an episode of {} has {} steps; expected at most that",
+                     SampleStepsText(config), task.name(), steps);
   }
   // Two episodes of each environment are not usable: the one that just ended and the unfinished
   // one.

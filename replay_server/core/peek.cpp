@@ -10,6 +10,7 @@
 #include "common/base/error.h"
 #include "common/base/random.h"
 #include "common/config/run_files.h"
+#include "common/config/sequences.h"
 #include "common/run_folder/run_file_names.h"
 #include "common/wire/batch_schema.h"
 #include "replay_server/core/batch_gather.h"
@@ -49,8 +50,9 @@ bool StillThere(const Ring& ring, const EpisodeIndex& index, const BatchPlan& pl
     uint64_t id = element.id;
     if (!there(id) || (element.goal != 0 && !there(element.goal))) return false;
     if (run.spec.goal_picture && !there(index.GoalRecord(id))) return false;
-    for (int k = 1; k < run.config.replay.n_step && index.Next(id) != 0; ++k) id = index.Next(id);
-    const int records = run.config.replay.n_step + run.spec.stack;
+    const int steps = SampleStepsOf(run.config);
+    for (int k = 1; k < steps && index.Next(id) != 0; ++k) id = index.Next(id);
+    const int records = steps + run.spec.stack;
     for (int k = 0; k < records && id != 0; ++k) {
       if (!there(id)) return false;
       id = ring.Slot(id).prev;

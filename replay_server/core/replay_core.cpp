@@ -9,6 +9,7 @@
 #include "common/config/batch_options.h"
 #include "common/config/priorities.h"
 #include "common/config/sending_window.h"
+#include "common/config/sequences.h"
 #include "common/run_folder/run_file_names.h"
 
 namespace shoal::replay {
@@ -67,6 +68,7 @@ PlanOptions PlanOptionsOf(const Config& config) {
           .copies = config.replay.copies,
           .target_shifts = config.replay.target_shifts,
           .critic_shifts = config.replay.critic_shifts,
+          .horizon = HorizonOf(config),
           .shift_pad = config.replay.shift_pad};
 }
 
@@ -78,13 +80,13 @@ void CheckSampling(const RunConfig& run) {
   // stack serve one sample only.
   const int64_t envs = int64_t{config.envs_per_actor} * std::max(1, config.actors);
   const int64_t least =
-      config.replay.min_size + envs * (config.replay.n_step + int64_t{run.spec.stack});
+      config.replay.min_size + envs * (SampleStepsOf(config) + int64_t{run.spec.stack});
   if (config.replay.capacity < least) {
     throw UsageError(
         "replay.capacity = {} does not hold replay.min_size = {} samples: with {} environments, "
-        "replay.n_step = {} and frame stacks of {} expected at least {}",
-        config.replay.capacity, config.replay.min_size, envs, config.replay.n_step, run.spec.stack,
-        least);
+        "{} and frame stacks of {} expected at least {}",
+        config.replay.capacity, config.replay.min_size, envs, SampleStepsText(config),
+        run.spec.stack, least);
   }
   OptionsOfLimiter(run);
 }

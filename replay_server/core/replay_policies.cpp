@@ -5,6 +5,7 @@
 
 #include "common/config/priorities.h"
 #include "common/config/privileged_blocks.h"
+#include "common/config/sequences.h"
 #include "replay_server/core/hindsight.h"
 #include "replay_server/core/movement_selector.h"
 #include "replay_server/core/priority_selector.h"
@@ -54,13 +55,13 @@ ReplayPolicies MakePolicies(const RunConfig& run, const Ring& ring, const Episod
 
 IndexOptions IndexOptionsOf(const RunConfig& run) {
   return {.stack = run.spec.stack,
-          .n_step = run.config.replay.n_step,
+          .n_step = SampleStepsOf(run.config),
           .whole_episodes = Hindsight(run.config),
           .goal_pictures = run.spec.goal_picture};
 }
 
 uint64_t WaitingSteps(const RunConfig& run) {
-  int steps = run.config.replay.n_step - 1;
+  int steps = SampleStepsOf(run.config) - 1;
   if (Hindsight(run.config)) steps = std::max(steps, TaskOf(run).EnvStepsPerEpisode(1));
   return static_cast<uint64_t>(steps) * static_cast<uint64_t>(run.config.envs_per_actor);
 }

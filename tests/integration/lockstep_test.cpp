@@ -125,6 +125,26 @@ TEST(Lockstep, HindsightWithPicturesOfGoalsGoesOnBitForBit) {
                         {"--preset", "fetch-reach-her", "--lockstep"}, {450});
 }
 
+// Updates copy networks in periods, and both sides of the interrupt are in the middle of one.
+TEST(Lockstep, ALatentModelGoesOnBitForBit) {
+  const TrainingRun whole;
+  ExpectGoesOnBitForBit(whole,
+                        TrainingRun::FromPixels({{"actors", "1"},
+                                                 {"env_steps", "2400"},
+                                                 {"eval.interval", "1200"},
+                                                 {"mrq.horizon", "2"},
+                                                 {"mrq.period", "70"},
+                                                 {"observation.cameras", R"(["front"])"},
+                                                 {"observation.height", "24"},
+                                                 {"observation.width", "24"},
+                                                 {"replay.priorities", "none"},
+                                                 {"replay.priority_exponent", "0.6"},
+                                                 {"replay.samples_per_insert", "8"},
+                                                 {"task", "FetchReachDense"}}),
+                        {"--preset", "state-mrq", "--lockstep"}, {450});
+  EXPECT_NE(NewestLearnerState(whole).find("held.heads.weight"), std::string::npos);
+}
+
 TEST(Lockstep, TheSameSeedGivesTheSameBytes) {
   const Outcome first = RunInLockstep("5"), again = RunInLockstep("5"), other = RunInLockstep("6");
   EXPECT_FALSE(first.learner.empty());

@@ -275,9 +275,22 @@ const std::set<std::string_view> kOfUserEnvironments{"user_code", "conversion"};
 // Only a learner on a GPU reports these (Gpu.*).
 const std::set<std::string_view> kOfGpus{"card_memory_mb", "card_memory_size_mb", "card_busy"};
 
+// Adds what a run with a preset reports.
+void AddReportedBy(const std::string& preset, const std::vector<std::string>& settings,
+                   std::set<RoleMetric>* seen) {
+  const TrainingRun run;
+  std::vector<std::string> command{
+      "shoal",      "train", "--preset", preset,
+      "--run-name", "run",   "--set",    "run_dir=" + run.parent().string()};
+  for (const std::string& setting : settings) command.insert(command.end(), {"--set", setting});
+  const ProgramResult result = RunProgram(command, seconds(120));
+  ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
+  AddReported(run, seen);
+}
+
 TEST(Operate, EveryMetricIsInTheTableOfMetrics) {
   std::set<RoleMetric> seen;
-  const TrainingRun run, on_policy;
+  const TrainingRun run;
   // Long enough for rates, which need updates of several seconds, on a fast machine as well.
   ASSERT_EQ(ExitCode(run.Train({{"observation.goal_mode", "both"},
                                 {"env_steps", "16000"},
@@ -286,14 +299,15 @@ TEST(Operate, EveryMetricIsInTheTableOfMetrics) {
   EXPECT_GE(LastReported(run, "coordinator").value("last_evaluation_env_steps", 0.0), 16000)
       << "an evaluation that came after the last second's report";
   AddReported(run, &seen);
-  const ProgramResult result =
-      RunProgram({"shoal", "train", "--preset", "fetch-reach-ppo", "--run-name", "run", "--set",
-                  "run_dir=" + on_policy.parent().string(), "--set", "env_steps=4000", "--set",
-                  "ppo.rollout_steps=128", "--set", "eval.interval=2000", "--set",
-                  "eval.episodes=4", "--set", "eval.final_episodes=0"},
-                 seconds(120));
-  ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
-  AddReported(on_policy, &seen);
+  AddReportedBy("fetch-reach-ppo",
+                {"env_steps=4000", "ppo.rollout_steps=128", "eval.interval=2000", "eval.episodes=4",
+                 "eval.final_episodes=0"},
+                &seen);
+  AddReportedBy("state-mrq",
+                {"task=cartpole_swingup", "env_steps=500", "replay.min_size=300",
+                 "exploration.random_steps=300", "network.state_hidden=[16]", "network.hidden=[16]",
+                 "eval.interval=400", "eval.episodes=1", "eval.final_episodes=0"},
+                &seen);
   // And the table names nothing that no process reports.
   for (const Metric& metric : launch::RunMetrics()) {
     const std::string name(metric.name);

@@ -66,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"AnAlgorithmThatDoesNotExist",
                 "fetch-reach-state",
                 {"learner.algorithm=a2c"},
-                {"learner.algorithm", "a2c", "sac | td3 | ddpg | drqv2 | ppo"}},
+                {"learner.algorithm", "a2c", "sac | td3 | ddpg | drqv2 | mrq | ppo"}},
         Refused{"AnEncoderThatDoesNotExist",
                 "fetch-reach-drq",
                 {"network.encoder=resnet"},

@@ -31,7 +31,10 @@ const std::set<std::string> kMayName = {
     // The schema: sections of keys with defaults and descriptions.
     "common/config/algorithm_config.h", "common/config/config.h", "common/config/config_keys.cpp",
     // The algorithm of old checkpoints, which do not name it.
-    "common/checkpoint/checkpoint_files.h"};
+    "common/checkpoint/checkpoint_files.h",
+    // An encoder that has the name of an algorithm.
+    "common/nn/encoders/encoder_kind.h", "common/nn/encoders/encoder_kind.cpp",
+    "common/nn/encoders/mrq.cpp"};
 
 // Folders of learner/agent that the list names; others are shared by several algorithms.
 std::set<std::string> AlgorithmsOf(const fs::path& root) {
@@ -107,7 +110,8 @@ std::vector<std::string> FindNamed(const fs::path& root) {
 }
 
 TEST(AlgorithmNames, StandInTheirFolderAndInTheListsAlone) {
-  ASSERT_THAT(AlgorithmsOf(SourcePath("")), ElementsAre("ddpg", "drqv2", "ppo", "sac", "td3"));
+  ASSERT_THAT(AlgorithmsOf(SourcePath("")),
+              ElementsAre("ddpg", "drqv2", "mrq", "ppo", "sac", "td3"));
   EXPECT_THAT(FindNamed(SourcePath("")), IsEmpty());
 }
 

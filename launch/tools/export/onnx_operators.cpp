@@ -48,6 +48,10 @@ OnnxTensor Tanh(const OnnxNode&, OnnxArguments in) {
   return MapValues(*in[0], [](float x) { return std::tanh(x); });
 }
 
+OnnxTensor Elu(const OnnxNode&, OnnxArguments in) {
+  return MapValues(*in[0], [](float x) { return x > 0 || std::isnan(x) ? x : std::expm1(x); });
+}
+
 OnnxTensor Exp(const OnnxNode&, OnnxArguments in) {
   return MapValues(*in[0], [](float x) { return std::exp(x); });
 }
@@ -329,6 +333,7 @@ constexpr std::pair<std::string_view, OnnxOperator> kOperators[] = {
     {"Concat", Concat},
     {"Conv", Conv},
     {"Div", Div},
+    {"Elu", Elu},
     {"Exp", Exp},
     {"Flatten", Flatten},
     {"Gemm", Gemm},

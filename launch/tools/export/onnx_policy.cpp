@@ -95,6 +95,8 @@ class GraphWriter {
         return Add("Relu", {input});
       case Activation::kTanh:
         return Add("Tanh", {input});
+      case Activation::kElu:
+        return Add("Elu", {input});
       case Activation::kNone:
         break;
     }

@@ -108,7 +108,9 @@ std::string ModelOf(const policy::PolicyDescription& policy, const nn::ActorPlan
   const NetworkConfig& network = policy.network;
   std::string arguments =
       fmt::format("net_arch=[{}], activation_fn=torch.nn.{}", fmt::join(network.hidden, ", "),
-                  network.activation == "tanh" ? "Tanh" : "ReLU");
+                  network.activation == "tanh"  ? "Tanh"
+                  : network.activation == "elu" ? "ELU"
+                                                : "ReLU");
   if (policy.spec.HasPixels()) {
     arguments +=
         fmt::format(", features_extractor_kwargs=dict(features_dim={})", actor.trunk_columns());

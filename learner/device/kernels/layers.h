@@ -16,16 +16,18 @@
 
 namespace shoal::learner::kernels {
 
-enum class Activation : int32_t { kNone, kRelu, kTanh };
+enum class Activation : int32_t { kNone, kRelu, kTanh, kElu };
 
 SHOAL_KERNEL float Activate(Activation activation, float x) {
   if (activation == Activation::kRelu) return x < 0 ? 0.f : x;
+  if (activation == Activation::kElu) return x > 0 ? x : std::exp(x) - 1;
   return activation == Activation::kTanh ? std::tanh(x) : x;
 }
 
 // The derivative at the input whose output is y.
 SHOAL_KERNEL float ActivationSlope(Activation activation, float y) {
   if (activation == Activation::kRelu) return y > 0 ? 1.f : 0.f;
+  if (activation == Activation::kElu) return y > 0 ? 1.f : y + 1;
   return activation == Activation::kTanh ? 1 - y * y : 1.f;
 }
 

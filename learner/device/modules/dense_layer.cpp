@@ -21,6 +21,8 @@ kernels::Activation ActivationOf(nn::Activation activation) {
       return kernels::Activation::kRelu;
     case nn::Activation::kTanh:
       return kernels::Activation::kTanh;
+    case nn::Activation::kElu:
+      return kernels::Activation::kElu;
     case nn::Activation::kNone:
       return kernels::Activation::kNone;
   }
@@ -70,7 +72,8 @@ DenseLayer::DenseLayer(Workspace* workspace, const DeviceParameters& parameters,
 }
 
 bool DenseLayer::ProductIsOutput() const {
-  return !has_norm_ && rounded_ == nullptr && activation_ != nn::Activation::kTanh;
+  return !has_norm_ && rounded_ == nullptr && activation_ != nn::Activation::kTanh &&
+         activation_ != nn::Activation::kElu;
 }
 
 void DenseLayer::Forward() {

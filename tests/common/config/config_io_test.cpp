@@ -176,9 +176,9 @@ TEST(ToJson, ListsSectionsInTheOrderOfTheStruct) {
   for (const auto& [name, value] : object.items()) {
     if (value.is_object()) names.push_back(name);
   }
-  EXPECT_THAT(names,
-              ElementsAre("env", "observation", "randomization", "replay", "learner", "sac", "ppo",
-                          "td3", "drqv2", "exploration", "network", "eval", "stop", "transport"));
+  EXPECT_THAT(names, ElementsAre("env", "observation", "randomization", "replay", "learner", "sac",
+                                 "ppo", "td3", "drqv2", "mrq", "exploration", "network", "eval",
+                                 "stop", "transport"));
 }
 
 TEST(ConfigHash, ChangesWithWhatIsComputedButNotWithNameOrLength) {

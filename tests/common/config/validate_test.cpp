@@ -98,7 +98,7 @@ TEST(Validate, NoiseThatTheExplorationDoesNotAddIsRefused) {
 }
 
 TEST(Validate, APolicyWithoutDeviationTakesNoKeysOfIt) {
-  for (const char* algorithm : {"td3", "ddpg", "drqv2"}) {
+  for (const char* algorithm : {"td3", "ddpg", "drqv2", "mrq"}) {
     const auto refusal = [&](const std::function<void(Config*)>& change) {
       return Refusal([&](Config* config) {
         config->learner.algorithm = algorithm;
@@ -128,8 +128,39 @@ TEST(Validate, APolicyWithoutDeviationTakesNoKeysOfIt) {
   EXPECT_EQ(Refusal([](Config* c) { c->sac.initial_temperature = 1; }), "");
 }
 
+TEST(Validate, SequencesBelongToAlgorithmsThatLearnFromThem) {
+  const auto refusal = [](const std::function<void(Config*)>& change) {
+    return Refusal([&](Config* config) {
+      config->learner.algorithm = "mrq";
+      change(config);
+    });
+  };
+  EXPECT_EQ(refusal([](Config*) {}), "");
+  for (const char* assignment :
+       {"learner.reward_scale=3", "learner.tau=0.02", "learner.average_rate=1",
+        "learner.actor_period=1", "learner.target_period=2", "learner.bounded_targets=true",
+        "learner.normalise_vectors=true", "replay.copies=2"}) {
+    const std::string key(assignment, std::string_view(assignment).find('='));
+    EXPECT_EQ(refusal([&](Config* config) { ApplyAssignments({assignment}, config); }),
+              key + ": learner.algorithm = mrq does not use it; expected it unset");
+  }
+  const auto state = [](Config* config) {
+    config->observation.pixels = false;
+    config->observation.proprioception = true;
+  };
+  EXPECT_THAT(refusal(state), HasSubstr("network.state_hidden = []: without observation.pixels"));
+  EXPECT_EQ(refusal([&](Config* config) {
+              state(config);
+              config->network.state_hidden = {8};
+            }),
+            "");
+  EXPECT_EQ(Refusal([](Config* config) { config->network.state_hidden = {8}; }),
+            "network.state_hidden: learner.algorithm = sac has no latent state; expected it unset, "
+            "or learner.algorithm = mrq");
+}
+
 TEST(Validate, OnlyADeterministicPolicyTakesAPenaltyOfItsMean) {
-  for (const std::string algorithm : {"sac", "ppo", "td3", "ddpg", "drqv2"}) {
+  for (const std::string algorithm : {"sac", "ppo", "td3", "ddpg", "drqv2", "mrq"}) {
     const std::string refusal = Refusal([&](Config* config) {
       config->learner.algorithm = algorithm;
       config->learner.mean_penalty = 0.1;

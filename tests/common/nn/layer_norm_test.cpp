@@ -88,6 +88,21 @@ TEST(Relu, GradientPassesWhereTheOutputIsPositive) {
   EXPECT_EQ(dx, (std::vector<float>{0, 2, 0, 4}));
 }
 
+TEST(Elu, AgreesWithTheLibraryAndItsGradientWithCentralDifferences) {
+  std::vector<float> x, y(201), dx(201), ones(201, 1.f);
+  for (int i = -100; i <= 100; ++i) x.push_back(static_cast<float>(i) * 0.1f + 0.05f);
+  EluForward(201, x.data(), y.data());
+  EluBackward(201, y.data(), ones.data(), dx.data());
+  const auto elu = [](double value) { return value > 0 ? value : std::expm1(value); };
+  for (size_t i = 0; i < x.size(); ++i) {
+    EXPECT_NEAR(y[i], elu(x[i]), 1e-6);
+    double value = x[i];
+    EXPECT_NEAR(dx[i], CentralDifference(&value, [&] { return elu(value); }), 2e-6);
+  }
+  EluForward(201, x.data(), x.data());
+  EXPECT_EQ(x, y) << "in place";
+}
+
 TEST(Tanh, AgreesWithTheLibraryAndItsGradientWithCentralDifferences) {
   std::vector<float> x, y(201), dx(201), ones(201, 1.f);
   for (int i = -100; i <= 100; ++i) x.push_back(static_cast<float>(i) * 0.1f);

@@ -32,6 +32,11 @@ inline RunConfig SmallRun(const std::string& algorithm, bool pixels) {
     run.config.learner.reward_scale = LearnerConfig().reward_scale;
     run.spec.drawn_actions = true;
   }
+  if (algorithm == "mrq") {
+    run.config.learner.normalise_vectors = false;
+    run.config.learner.reward_scale = LearnerConfig().reward_scale;
+    run.config.network.state_hidden = {10, 9};
+  }
   if (!pixels) {
     run.spec.cameras.clear();
     run.spec.channels = run.spec.height = run.spec.width = 0;
@@ -71,6 +76,7 @@ inline std::filesystem::path WriteCheckpointOf(const RunConfig& run,
   const auto agent = learner::MakeAgent(run.config, run.spec, nn::Precision::kF32);
   const bool rollout = run.config.learner.algorithm == "ppo";
   const BatchOptions options{.batch = run.config.learner.batch * (rollout ? 2 : 1),
+                             .horizon = BatchOptionsOf(run).horizon,
                              .rollout = rollout,
                              .privileged = BatchOptionsOf(run).privileged};
   for (uint64_t u = 0; u < 3; ++u) {

@@ -30,7 +30,7 @@ class CheckpointPolicyTest : public testing::Test {
  protected:
   std::string Refusal() const { return Refusal(checkpoint_); }
   static std::string Refusal(const fs::path& folder) {
-    const std::string message = ErrorMessage([&] { ReadCheckpointPolicy(folder); });
+    std::string message = ErrorMessage([&] { ReadCheckpointPolicy(folder); });
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
     return message;
   }

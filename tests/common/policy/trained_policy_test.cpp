@@ -41,7 +41,7 @@ void ExpectTheActorsActions(const RunConfig& run, const fs::path& checkpoint) {
 }
 
 TEST(TrainedPolicy, PlaysWhatTheActorPlaysByEveryAlgorithm) {
-  for (const std::string algorithm : {"sac", "td3", "ddpg", "drqv2", "ppo"}) {
+  for (const std::string algorithm : {"sac", "td3", "ddpg", "drqv2", "mrq", "ppo"}) {
     for (const bool pixels : {false, true}) {
       SCOPED_TRACE(algorithm + (pixels ? ", pixels" : ", state"));
       const TemporaryFolder folder;

@@ -68,6 +68,21 @@ TEST(BatchSchema, GivesArraysByNameAndType) {
   EXPECT_DEATH(view.Array<float>("id"), "array 'id' is u64");
 }
 
+TEST(BatchSchema, HasTheStepsOfSequences) {
+  const BatchSchema schema(Spec(), {.batch = 3, .horizon = 2});
+  const auto memory = Memory(schema);
+  const BatchView view = schema.View(memory.data());
+  ASSERT_EQ(view.steps.size(), 2u);
+  EXPECT_EQ(view.steps[1].next_frames.size(), 3u * 210);
+  EXPECT_EQ(view.steps[1].next_vector.size(), 9u);
+  EXPECT_EQ(view.steps[1].action.size(), 12u);
+  EXPECT_EQ(view.steps[1].reward.size(), 3u);
+  EXPECT_EQ(view.steps[1].terminated.size(), 3u);
+  EXPECT_EQ(view.steps[1].present.data(), view.Array<float>("step2.present").data());
+  EXPECT_FALSE(schema.Has("step3.present"));
+  EXPECT_NE(schema.Hash(), BatchSchema(Spec(), {.batch = 3, .horizon = 1}).Hash());
+}
+
 TEST(BatchSchema, HasNoArraysForWhatTheSpecDoesNotHave) {
   ObservationSpec spec = Spec();
   spec.channels = spec.height = spec.width = 0;

@@ -45,11 +45,28 @@ class RandomBatch {
       view.continues[t] = t + 1 < view.continues.size() ? view.bootstrap[t] : 0;
     }
     for (float& value : view.probability) value = float(random.Uniform(0.001, 0.1));
+    FillSteps(view, &random);
   }
 
   BatchView View() const { return schema_.View(memory_.data()); }
 
  private:
+  // A step ends its sequence with probability 0.2.
+  static void FillSteps(const BatchView& view, Random* random) {
+    for (size_t h = 0; h < view.steps.size(); ++h) {
+      const StepView& step = view.steps[h];
+      for (uint8_t& pixel : step.next_frames) pixel = uint8_t(random->Next());
+      for (float& value : step.next_vector) value = float(random->Normal());
+      for (float& value : step.action) value = float(random->Uniform(-1, 1));
+      for (float& value : step.reward) value = float(random->Normal());
+      for (size_t b = 0; b < view.rows(); ++b) {
+        const StepView* before = h == 0 ? nullptr : &view.steps[h - 1];
+        step.present[b] = before == nullptr ? 1 : before->present[b] * (1 - before->terminated[b]);
+        step.terminated[b] = random->Uniform() < 0.2 ? step.present[b] : 0;
+      }
+    }
+  }
+
   BatchSchema schema_;
   AlignedBytes memory_;
 };

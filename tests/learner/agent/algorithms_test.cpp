@@ -14,6 +14,7 @@
 #include "common/config/config_io.h"
 #include "common/config/on_policy.h"
 #include "common/config/priorities.h"
+#include "common/config/sequences.h"
 #include "tests/learner/agent/agent_fixture.h"
 
 namespace shoal::learner {
@@ -39,6 +40,7 @@ class EachAlgorithm : public testing::TestWithParam<std::string> {
   RandomBatch Batch(uint64_t key) const {
     return {SmallSpec(),
             BatchOptions{.batch = config_.learner.batch,
+                         .horizon = HorizonOf(config_),
                          .rollout = LearnsOnPolicy(config_),
                          .probabilities = HasPriorities(config_.replay)},
             key};

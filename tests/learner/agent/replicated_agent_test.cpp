@@ -16,6 +16,7 @@
 
 #include "common/base/error.h"
 #include "common/config/priorities.h"
+#include "common/config/sequences.h"
 #include "common/nn/parallel.h"
 #include "learner/agent/sac/sac_agent.h"
 #include "tests/learner/agent/agent_fixture.h"
@@ -62,6 +63,7 @@ class ReplicatedAgentTest : public testing::TestWithParam<Case> {
     return {Spec(),
             BatchOptions{.batch = config_.learner.batch,
                          .copies = config_.replay.copies,
+                         .horizon = HorizonOf(config_),
                          .probabilities = HasPriorities(config_.replay),
                          .privileged = told ? std::vector<std::string>{"object"}
                                             : std::vector<std::string>{}},
@@ -177,6 +179,14 @@ const Case kCases[] = {
     {"td3", [](Config* config) { config->learner.algorithm = "td3"; }},
     {"ddpg", [](Config* config) { config->learner.algorithm = "ddpg"; }},
     {"drqv2", [](Config* config) { config->learner.algorithm = "drqv2"; }},
+    {"mrq",
+     [](Config* config) {
+       config->learner.algorithm = "mrq";
+       config->mrq.horizon = 2;
+       config->mrq.period = 2;
+       config->network.state_hidden = {10, 64};
+       config->network.hidden = {12, 256};
+     }},
 };
 
 INSTANTIATE_TEST_SUITE_P(Of, ReplicatedAgentTest, testing::ValuesIn(kCases),

@@ -242,6 +242,12 @@ const AgentCase kAgentCases[] = {
        config->network.activation = "tanh";
        config->network.hidden = {10, 12, 9};
      }},
+    {"sac_with_elu",
+     [](Config* config, ObservationSpec*) {
+       config->network.layer_norm = false;
+       config->network.trunk = "elu";
+       config->network.activation = "elu";
+     }},
     {"sac_ensemble",
      [](Config* config, ObservationSpec* spec) {
        WithoutPixels(spec);

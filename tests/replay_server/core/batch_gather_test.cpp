@@ -48,13 +48,15 @@ class BatchGatherTest : public testing::Test {
   }
 
   BatchView Gather(const BatchPlan& plan, const NStep& n_step = {},
-                   std::vector<std::string> privileged = {}) {
+                   std::vector<std::string> privileged = {}, int horizon = 0) {
     schema_.emplace(spec_, BatchOptions{.batch = int(plan.elements.size()),
+                                        .horizon = horizon,
                                         .privileged = std::move(privileged)});
     memory_ = AlignedBytes(schema_->total_bytes());
     std::fill_n(memory_.data(), schema_->total_bytes(), uint8_t{0});  // between the arrays, too
-    const BatchView view = schema_->View(memory_.data());
-    const EpisodeIndex index(*ring_, {.stack = spec_.stack, .n_step = n_step.steps});
+    BatchView view = schema_->View(memory_.data());
+    const EpisodeIndex index(*ring_,
+                             {.stack = spec_.stack, .n_step = std::max(n_step.steps, horizon)});
     BatchGather(*ring_, index, spec_, n_step, nullptr, schema_->options().privileged)
         .Gather(plan, view);
     return view;
@@ -134,6 +136,64 @@ TEST_F(BatchGatherTest, TheBytesDoNotDependOnHowTheFramesAreShared) {
   ASSERT_GE(copies.parts(), 3);
   for (int part = copies.parts() - 1; part >= 0; --part) copies.MakePart(part);
   EXPECT_EQ(bytes(memory_), bytes(alone));
+}
+
+TEST_F(BatchGatherTest, ASequenceHasTheStepsThatFollowWithShiftsOfTheirOwn) {
+  Fill(TinySpec(2, 9, 7), 0);
+  const std::vector<Shift> shifts{{1, 0}, {0, 2}, {-3, 1}};
+  const BatchView view =
+      Gather({.elements = {{.id = 3, .obs = {}, .next_obs = {}, .steps = shifts}}},
+             {.steps = 2, .discount = 0.5}, {}, 3);
+  ASSERT_EQ(view.steps.size(), 3u);
+  for (size_t h = 0; h < 3; ++h) {
+    const size_t index = 2 + h;  // of the step's record
+    const StepView& step = view.steps[h];
+    EXPECT_EQ(Bytes(step.next_frames), Stack({index - 1, index}, shifts[h])) << h;
+    EXPECT_EQ(std::vector<float>(step.next_vector.begin(), step.next_vector.end()),
+              Observed(index));
+    const auto action = ring_->layout().Action(records_[index].data());
+    EXPECT_TRUE(std::ranges::equal(step.action, action)) << h;
+    EXPECT_EQ(step.reward[0], RecordLayout::Header(records_[index].data()).reward);
+    EXPECT_EQ(step.terminated[0], 0);
+    EXPECT_EQ(step.present[0], 1);
+  }
+  EXPECT_EQ(view.steps[0].action[0], view.action[0]);
+  EXPECT_EQ(view.reward[0], view.steps[0].reward[0] + 0.5f * view.steps[1].reward[0]);
+}
+
+TEST_F(BatchGatherTest, ASequenceEndsWithTheStepThatTerminatesItsEpisode) {
+  Fill(TinySpec(1), kTerminated);
+  const BatchPlan plan{.elements = {{.id = 4, .obs = {}, .next_obs = {}, .steps = {{}, {}, {}}},
+                                    {.id = 2, .obs = {}, .next_obs = {}, .steps = {{}, {}, {}}}}};
+  const BatchView view = Gather(plan, {}, {}, 3);
+  const auto of_first = [&](auto member) {
+    std::vector<float> values;
+    for (const StepView& step : view.steps) values.push_back((step.*member)[0]);
+    return values;
+  };
+  EXPECT_EQ(of_first(&StepView::present), (std::vector<float>{1, 1, 0}));
+  EXPECT_EQ(of_first(&StepView::terminated), (std::vector<float>{0, 1, 0}));
+  const StepView& absent = view.steps[2];
+  EXPECT_EQ(absent.reward[0], 0);
+  EXPECT_EQ(absent.next_vector[0], 0);
+  EXPECT_EQ(absent.action[0], 0);
+  EXPECT_EQ(absent.next_frames[0], 0);
+  EXPECT_EQ(absent.present[1], 1) << "the other row has three steps";
+}
+
+TEST_F(BatchGatherTest, APlanDrawsAShiftForEachStepOfASequence) {
+  Fill(TinySpec(1), 0);
+  Random random(3);
+  ListedSelector selector({2, 2});
+  const auto plan =
+      DrawPlan({.batch = 2, .horizon = 40, .shift_pad = 2}, &selector, nullptr, &random);
+  ASSERT_TRUE(plan);
+  std::set<std::pair<int, int>> seen;
+  for (const BatchPlan::Element& element : plan->elements) {
+    ASSERT_EQ(element.steps.size(), 40u);
+    for (const Shift& shift : element.steps) seen.insert({shift.dx, shift.dy});
+  }
+  EXPECT_GT(seen.size(), 20u) << "of 25";
 }
 
 TEST_F(BatchGatherTest, PrivilegedBlocksAreThoseOfTheSameRecordsAsTheVectors) {

@@ -73,7 +73,8 @@ class History {
                 .whole_episodes = kind.hindsight.has_value(),
                 .goal_pictures = kind.goal_pictures},
         privileged_(kind.goal_pictures ? Names{"desired_goal"} : Names{}),
-        random_(seed) {
+        random_(seed),
+        draws_(seed + 100) {
     StartServer();
     for (uint32_t actor = 0; actor < 3; ++actor) StartSession(actor);
   }
@@ -114,16 +115,20 @@ class History {
     if (kind_.hindsight) {
       relabeller.emplace(server_->ring, server_->index, *kind_.hindsight, /*goals_per_sample=*/4);
     }
-    const auto plan =
-        DrawPlan({.batch = kBatch}, selector, relabeller ? &*relabeller : nullptr, &random_);
+    const auto plan = DrawPlan({.batch = kBatch, .horizon = oracle_.n_step}, selector,
+                               relabeller ? &*relabeller : nullptr, &draws_);
     ASSERT_TRUE(plan.has_value());
-    const BatchSchema schema(spec_, {.batch = kBatch, .privileged = privileged_});
+    const BatchSchema schema(
+        spec_, {.batch = kBatch, .horizon = oracle_.n_step, .privileged = privileged_});
     const AlignedBytes memory(schema.total_bytes());
     const BatchView view = schema.View(memory.data());
     BatchGather(server_->ring, server_->index, spec_,
                 {.steps = oracle_.n_step, .discount = kDiscount}, &goals_, privileged_)
         .Gather(*plan, view);
-    for (size_t b = 0; b < kBatch; ++b) batches_.CheckElement(plan->elements[b], b, view);
+    for (size_t b = 0; b < kBatch; ++b) {
+      batches_.CheckElement(plan->elements[b], b, view);
+      CheckSequence(b, view);
+    }
     if (kind_.movement_share) batches_.CheckProbabilities(*plan, kept_.ids);
   }
 
@@ -207,6 +212,31 @@ class History {
               counters.highest);
   }
 
+  // The steps of a sequence must add up to the sample, which agrees with the oracle. No picture is
+  // shifted.
+  static void CheckSequence(size_t b, const BatchView& batch) {
+    const auto row = [&](auto array) {
+      const size_t size = array.size() / batch.rows();
+      return array.subspan(b * size, size);
+    };
+    double reward = 0, discount = 1;
+    size_t last = 0;
+    for (size_t h = 0; h < batch.steps.size() && batch.steps[h].present[b] == 1; ++h) {
+      if (h > 0) discount *= kDiscount;
+      reward += discount * batch.steps[h].reward[b];
+      last = h;
+    }
+    const StepView& end = batch.steps[last];
+    ASSERT_FLOAT_EQ(static_cast<float>(reward), batch.reward[b]);
+    ASSERT_EQ(end.terminated[b] == 1 ? 0 : static_cast<float>(discount), batch.bootstrap[b]);
+    ASSERT_TRUE(std::ranges::equal(row(end.next_frames), row(batch.next_obs_frames)));
+    ASSERT_TRUE(std::ranges::equal(row(end.next_vector), row(batch.next_obs_vector)));
+    ASSERT_TRUE(std::ranges::equal(row(batch.steps[0].action), row(batch.action)));
+    for (size_t h = last + 1; h < batch.steps.size(); ++h) {
+      ASSERT_EQ(batch.steps[h].present[b], 0);
+    }
+  }
+
   bool LacksItsGoalAlone(uint64_t id) const {
     return spec_.goal_picture && oracle_.Steps(id) && !oracle_.Holds(oracle_.Episode(id).front()) &&
            oracle_.Stack(oracle_.all[id - 1].prev);
@@ -225,8 +255,8 @@ class History {
   KeptSelector kept_;
   std::unique_ptr<Server> server_;
   std::optional<MovementSelector> movement_;  // over the server's ring
-  Random random_;
-  std::vector<Actor> actors_;  // the newest session of each
+  Random random_, draws_;                     // of the events, and of the batches
+  std::vector<Actor> actors_;                 // the newest session of each
   uint64_t last_session_ = 0;
   uint64_t without_goal_ = 0, restarts_ = 0;
 };

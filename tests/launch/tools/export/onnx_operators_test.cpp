@@ -19,6 +19,7 @@ using Attributes = std::map<std::string, OnnxAttribute>;
 OnnxTensor Apply(const std::string& op, const std::vector<OnnxTensor>& inputs,
                  Attributes attributes = {}) {
   std::vector<const OnnxTensor*> arguments;
+  arguments.reserve(inputs.size());
   for (const OnnxTensor& input : inputs) arguments.push_back(&input);
   return FindOnnxOperator(op)(
       {.op = op, .inputs = {}, .output = "y", .attributes = std::move(attributes)}, arguments);
@@ -43,6 +44,8 @@ TEST(OnnxOperators, OneNumberAtATime) {
             (std::vector<float>{-1, -0.5f, 0, 1}));
   EXPECT_THAT(Apply("Tanh", {x}).values,
               Pointwise(FloatNear(1e-6f), {-0.9640276f, -0.4621172f, 0.f, 0.9950548f}));
+  EXPECT_THAT(Apply("Elu", {x}).values,
+              Pointwise(FloatNear(1e-6f), {-0.8646647f, -0.3934693f, 0.f, 3.f}));
   EXPECT_EQ(Apply("Cast", {x}, {{"to", int64_t{1}}}), x);
   EXPECT_TRUE(std::isnan(Apply("Relu", {{{1}, {NAN}}}).values[0]));
 }

@@ -53,19 +53,23 @@ TEST_P(OnnxPolicyOfEveryKind, ActsAsThePolicyDoes) {
 }
 
 TEST(OnnxPolicy, NetworksVariantsAreFollowed) {
-  NetworkConfig network;
-  network.layer_norm = true;
-  network.activation = "tanh";
-  network.trunk = "relu";
-  for (const char* encoder : {"", "compact"}) {
-    const policy::CheckpointPolicy policy = RandomPolicy({encoder}, network);
-    const ObservationSet observations =
-        RandomObservations(policy.description.spec, {}, 4, /*seed=*/3);
-    const Agreement agreement =
-        Compare(OwnActions(policy, observations),
-                OnnxActions(PolicyToOnnx(policy), policy.description.spec, observations),
-                observations.count);
-    EXPECT_LT(agreement.largest_difference, 2e-5) << encoder;
+  NetworkConfig tanh, elu;
+  tanh.layer_norm = true;
+  tanh.activation = "tanh";
+  tanh.trunk = "relu";
+  elu.activation = elu.trunk = "elu";
+  elu.state_hidden = {12, 10};
+  for (const NetworkConfig& network : {tanh, elu}) {
+    for (const char* encoder : {"", "compact"}) {
+      const policy::CheckpointPolicy policy = RandomPolicy({encoder}, network);
+      const ObservationSet observations =
+          RandomObservations(policy.description.spec, {}, 4, /*seed=*/3);
+      const Agreement agreement =
+          Compare(OwnActions(policy, observations),
+                  OnnxActions(PolicyToOnnx(policy), policy.description.spec, observations),
+                  observations.count);
+      EXPECT_LT(agreement.largest_difference, 2e-5) << network.activation << encoder;
+    }
   }
 }
 

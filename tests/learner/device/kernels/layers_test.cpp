@@ -45,6 +45,9 @@ class LayerKernels : public KernelTest {
     if (activation == Activation::kTanh) {
       nn::TanhForward(int(n), e.y.data(), e.y.data());
       nn::TanhBackward(int(n), e.y.data(), dy, dz.data());
+    } else if (activation == Activation::kElu) {
+      nn::EluForward(int(n), e.y.data(), e.y.data());
+      nn::EluBackward(int(n), e.y.data(), dy, dz.data());
     } else {
       nn::ReluForward(int(n), e.y.data(), e.y.data());
       nn::ReluBackward(int(n), e.y.data(), dy, dz.data());
@@ -130,6 +133,8 @@ TEST_F(LayerKernels, NormsWithAReluOfTwoFunctions) {
 }
 
 TEST_F(LayerKernels, NormsWithATanh) { CompareNorm(70, 50, Activation::kTanh); }
+
+TEST_F(LayerKernels, NormsWithAnElu) { CompareNorm(70, 50, Activation::kElu); }
 
 TEST_F(LayerKernels, BiasAndActivation) {
   constexpr size_t kRows = 41, kColumns = 37, kNumbers = kRows * kColumns;
