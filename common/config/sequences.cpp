@@ -55,6 +55,12 @@ void ValidateSequences(const Config& config) {
     throw UsageError("{}: learner.algorithm = {} does not use it; expected it unset", key,
                      learner.algorithm);
   }
+  if (config.network.hidden.empty()) {
+    throw UsageError(
+        "network.hidden = []: the model of learner.algorithm = {} needs layers; expected for "
+        "example [512, 512]",
+        learner.algorithm);
+  }
   if (!config.observation.pixels && config.network.state_hidden.empty()) {
     throw UsageError(
         "network.state_hidden = []: without observation.pixels, the latent state of "

@@ -154,6 +154,12 @@ TEST(Validate, SequencesBelongToAlgorithmsThatLearnFromThem) {
               config->network.state_hidden = {8};
             }),
             "");
+  EXPECT_THAT(refusal([&](Config* config) {
+                state(config);
+                config->network.state_hidden = {8};
+                config->network.hidden = {};
+              }),
+              HasSubstr("network.hidden = []: the model of learner.algorithm = mrq"));
   EXPECT_EQ(Refusal([](Config* config) { config->network.state_hidden = {8}; }),
             "network.state_hidden: learner.algorithm = sac has no latent state; expected it unset, "
             "or learner.algorithm = mrq");
