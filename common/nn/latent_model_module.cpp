@@ -118,7 +118,7 @@ LatentModelModule::LatentModelModule(const LatentModelPlan& plan, int steps, Use
   CHECK(context.maker == nullptr) << "latent models are computed on the CPU";
   const ThreadScope scope(context.threads);
   const LayerContext layers = ToLayerContext(&parameters_, use, context);
-  join_ = std::make_unique<Step>(plan, layers);
+  if (steps == 0) join_ = std::make_unique<Step>(plan, layers);
   for (int h = 0; h < steps; ++h) steps_.push_back(std::make_unique<Step>(plan, layers));
 }
 
@@ -126,11 +126,12 @@ LatentModelModule::~LatentModelModule() = default;
 
 void LatentModelModule::Refresh() {
   const ThreadScope scope(context_.threads);
-  join_->Refresh();
+  if (join_) join_->Refresh();
   for (const auto& step : steps_) step->Refresh();
 }
 
 Array LatentModelModule::Join(Array state, Array action) {
+  CHECK(join_) << "this copy unrolls";
   const ThreadScope scope(context_.threads);
   join_->Join(HostValues(state).data(), HostValues(action).data());
   return HostArray(std::span(join_->joint.output(), size_t(join_->features.size())));

@@ -21,7 +21,7 @@ namespace shoal::nn {
 // them.
 class LatentModelModule final : public Module {
  public:
-  // `steps`: most steps H of Unroll; 0 if only Join is used.
+  // `steps`: most steps H of Unroll; 0 for a module of Join alone.
   LatentModelModule(const LatentModelPlan& plan, int steps, Use use, const ModuleContext& context);
   ~LatentModelModule() override;
 
@@ -46,7 +46,7 @@ class LatentModelModule final : public Module {
  private:
   struct Step;
 
-  std::unique_ptr<Step> join_;                // of Join
+  std::unique_ptr<Step> join_;                // of Join; else null
   std::vector<std::unique_ptr<Step>> steps_;  // of Unroll; they share the parameters
   std::vector<float> gradient_sums_;          // of the parameters, over the steps
 };

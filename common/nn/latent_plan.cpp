@@ -51,7 +51,8 @@ std::vector<ParameterSpec> LatentModelPlan::Parameters() const {
 }
 
 LatentModelPlan PlanLatentModel(const NetworkConfig& network, const ObservationSpec& spec,
-                                const std::string& name, int state, int rewards) {
+                                const std::string& name) {
+  const int state = PlanState(network, spec, name).columns();
   const int actions = std::max(1, state / 2), joint = network.hidden.back();
   LatentModelPlan plan{.action = NetworkPlan({spec.action_size}),
                        .joint = NetworkPlan({state + actions}),
@@ -63,7 +64,7 @@ LatentModelPlan PlanLatentModel(const NetworkConfig& network, const ObservationS
     plan.joint.Add(Hidden(network, name + ".joint" + std::to_string(i), network.hidden[i]));
   }
   plan.joint.Add(Output(network, name + ".joint.output", joint));
-  plan.heads.Add(Output(network, name + ".heads", 1 + state + rewards));
+  plan.heads.Add(Output(network, name + ".heads", 1 + state + kRewardBins));
   return plan;
 }
 

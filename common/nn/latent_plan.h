@@ -8,8 +8,8 @@
 //   state    z = layers([ trunk(features) | vector ])        NAME.trunk.*, NAME.mlp.layer{i}.*
 //   joint    j = MLP([ z | ELU(action layer(a)) ])            NAME.action.*, NAME.joint{i}.*
 //   heads    [ end | next z | reward logits ] = linear(j)     NAME.heads.*
-//   policy   MLP(z), the rest of a policy of PlanActor        NAME.mlp.layer{i}.*,
-//   NAME.mlp.output.* critic   q_i = MLP_i(j)                                   NAME.q{i}.*
+//   policy   MLP(z), the rest of a policy of PlanActor        NAME.mlp.*
+//   critic   q_i = MLP_i(j)                                   NAME.q{i}.*
 #pragma once
 
 #include <string>
@@ -34,6 +34,9 @@ struct StatePlan {
 StatePlan PlanState(const NetworkConfig& network, const ObservationSpec& spec,
                     const std::string& name);
 
+// R, as in the paper.
+inline constexpr int kRewardBins = 65;
+
 struct LatentModelPlan {
   NetworkPlan action = {};  // (A) -> Z / 2, at least 1
   NetworkPlan joint = {};   // (Z + Z / 2) -> J, of the units of network.hidden, then J again
@@ -44,9 +47,8 @@ struct LatentModelPlan {
   int reward_columns() const { return heads.output().channels - 1 - state_columns(); }     // R
   std::vector<ParameterSpec> Parameters() const;
 };
-// `state`: Z. `rewards`: R.
 LatentModelPlan PlanLatentModel(const NetworkConfig& network, const ObservationSpec& spec,
-                                const std::string& name, int state, int rewards);
+                                const std::string& name);
 
 // The rest of the deterministic policy PlanActor(network, spec, kDeterministic, name): the layers
 // that read the latent state of `state` numbers, as the vector of a head.

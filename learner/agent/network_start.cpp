@@ -62,20 +62,32 @@ void RefuseStatisticsAlone(const nn::TensorMap& weights, const std::string& sour
       source, nn::kObservationMean);
 }
 
-// The tensor from which a tensor of the agent starts, or null for the usual initial value. A
-// target's encoder starts from its critic's encoder, if there is one, rather than from the
+// The network of the agent that `name` copies (a target, or the trained copy of a policy's latent
+// state), or "". A target's encoder copies its critic's encoder, if there is one, rather than the
 // policy's.
-const nn::NamedTensor* SourceOf(const std::string& name, const nn::TensorMap& weights) {
+std::string FollowedBy(const std::string& name, const nn::TensorMap& own) {
+  constexpr std::pair<std::string_view, const char*> kFollowing[] = {{"target.", "critic."},
+                                                                     {"target.", "actor."},
+                                                                     {"target_actor.", "actor."},
+                                                                     {"model.", "actor."}};
+  for (const auto& [copy, network] : kFollowing) {
+    if (!name.starts_with(copy)) continue;
+    std::string followed = network + name.substr(copy.size());
+    if (own.contains(followed)) return followed;
+  }
+  return "";
+}
+
+// The tensor from which a tensor of the agent starts, or null for the usual initial value.
+const nn::NamedTensor* SourceOf(const std::string& name, const nn::TensorMap& weights,
+                                const nn::TensorMap& own) {
   if (IsLeftAlone(name)) return nullptr;
   const auto find = [&](const std::string& wanted) {
     const auto at = weights.find(wanted);
     return at == weights.end() ? nullptr : &at->second;
   };
-  if (const auto* own = find(name)) return own;
-  for (const auto& [target, of] : {std::pair{"target.", "critic."}, {"target_actor.", "actor."}}) {
-    if (!name.starts_with(target)) continue;
-    if (const auto* followed = find(of + name.substr(std::strlen(target)))) return followed;
-  }
+  if (const auto* given = find(name)) return given;
+  if (const auto* followed = find(FollowedBy(name, own))) return followed;
   for (size_t dot = name.find('.'); dot != std::string::npos; dot = name.find('.', dot + 1)) {
     if (const auto* repeated = find(name.substr(dot + 1))) return repeated;
   }
@@ -97,7 +109,7 @@ nn::TensorMap StartTensors(const nn::TensorMap& weights, const std::string& sour
   }
   nn::TensorMap result = own;
   for (auto& [name, tensor] : result) {
-    if (const auto* weight = SourceOf(name, weights)) tensor = *weight;
+    if (const auto* weight = SourceOf(name, weights, own)) tensor = *weight;
   }
   return result;
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Starts an agent's networks from given weights instead of random weights.
 //
-// Given weights replace networks (encoder.*, actor.*, critic.*, value.*, their targets and
-// averages) and the running moments of observations. Optimisers, temperature, counters and the
-// scale of rewards start as in every new run.
+// Given weights replace networks (encoder.*, actor.*, critic.*, value.*, model.*, their targets and
+// averages), the running moments of observations and the scales of critics. Optimisers,
+// temperature, counters and the scale of rewards start as in every new run.
 #pragma once
 
 #include <string>

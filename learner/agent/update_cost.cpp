@@ -5,7 +5,9 @@
 
 #include "common/config/exploration_kind.h"
 #include "common/config/on_policy.h"
+#include "common/config/sequences.h"
 #include "common/nn/actor_critic_plan.h"
+#include "common/nn/latent_plan.h"
 #include "learner/agent/algorithms.h"
 #include "learner/agent/critic_outputs.h"
 #include "learner/agent/critic_vectors.h"
@@ -95,6 +97,28 @@ double OffPolicy(const Config& config, const ObservationSpec& spec, const Encode
          (critic_step + actor_step / std::max(1, config.learner.actor_period));
 }
 
+double WithModel(const Config& config, const ObservationSpec& spec, const EncoderPasses& encoder) {
+  const nn::StatePlan state = nn::PlanState(config.network, spec, "actor");
+  const nn::LatentModelPlan model = nn::PlanLatentModel(config.network, spec, "model");
+  const double of_state = MultiplyAdds(state.trunk) + MultiplyAdds(state.layers);
+  const double of_join = MultiplyAdds(model.action) + MultiplyAdds(model.joint);
+  const double of_actor =
+      MultiplyAdds(nn::PlanStateActor(config.network, spec, "actor", state.columns()));
+  const double of_critics =
+      MultiplyAdds(nn::PlanJointCritic(config.network, "critic", model.joint_columns()));
+  const int horizon = HorizonOf(config);
+  const double encode = encoder.forward + of_state;
+
+  // The states of all steps are targets of the model's loss.
+  const double model_step = encode + encoder.backward + 2 * of_state + horizon * encode +
+                            3 * horizon * (of_join + MultiplyAdds(model.heads));
+  const double targets = encode + of_actor + of_join + of_critics;
+  const double critic_step = encode + of_join + 3 * of_critics;
+  // The gradient of the action passes through critics and model, not through their weights.
+  const double actor_step = 3 * of_actor + 2 * of_join + 2 * of_critics;
+  return config.learner.batch * (model_step + targets + critic_step + actor_step);
+}
+
 double OnPolicy(const Config& config, const ObservationSpec& spec, const EncoderPasses& encoder) {
   const bool shared = config.ppo.networks == "shared";
   const auto head = [&](const char* name, int outputs) {
@@ -114,8 +138,10 @@ double OnPolicy(const Config& config, const ObservationSpec& spec, const Encoder
 UpdateCost CostOfUpdate(const Config& config, const ObservationSpec& spec) {
   const nn::NetworkPlan encoder = nn::PlanEncoder(config.network, spec);
   const EncoderPasses passes = PassesOf(encoder);
-  const double multiply_adds =
-      LearnsOnPolicy(config) ? OnPolicy(config, spec, passes) : OffPolicy(config, spec, passes);
+  const auto count = LearnsOnPolicy(config)  ? OnPolicy
+                     : HorizonOf(config) > 0 ? WithModel
+                                             : OffPolicy;
+  const double multiply_adds = count(config, spec, passes);
   return {.encoder_parameters = ParameterCount(encoder), .flop = 2 * multiply_adds};
 }
 

@@ -171,7 +171,11 @@ void BatchGather::GatherSteps(const BatchPlan::Element& element, std::span<const
     std::ranges::copy(ring_.layout().Action(ring_.Record(id)), row_of(step.action).begin());
     AddPictures(element, id, element.steps[h], row, step.next_frames, copies);
     GatherVectors(id, goal, row, step.next_vector, {});
-    id = terminated ? 0 : index_.Next(id);
+    // An episode that success ended has no later step, also where another goal would go on.
+    const bool ended = terminated || (ring_.Header(id).flags & kTerminated) != 0;
+    id = ended ? 0 : index_.Next(id);
+    CHECK(id != 0 || ended || h + 1 == out.steps.size())
+        << "record " << element.id << ", step " << h;
   }
 }
 

@@ -66,7 +66,9 @@ void RefuseWithoutCounterpart(const policy::PolicyDescription& policy, const nn:
   if (network.layer_norm) refuse("network.layer_norm = true", "false");
   if (!policy.spec.HasPixels()) return;
   if (network.encoder != "nature") refuse("network.encoder = " + network.encoder, "nature");
-  if (actor.trunk.layers()[0].layer_norm) refuse("network.trunk = tanh", "relu");
+  if (actor.trunk.layers()[0].layer_norm) {
+    refuse("network.trunk = " + network.trunk, "relu");
+  }
   if (actor.vector_columns > 0) {
     refuse(fmt::format("an observation of pixels beside a vector of {}", actor.vector_columns),
            "pixels or vectors alone");

@@ -2,17 +2,11 @@
 #include "learner/agent/mrq/latent_networks.h"
 
 #include "learner/agent/encoder_and_head.h"
-#include "learner/agent/mrq/model_loss.h"
 
 namespace shoal::learner {
 namespace {
 
 using Use = nn::Module::Use;
-
-nn::LatentModelPlan PlanModel(const Config& config, const ObservationSpec& spec,
-                              const std::string& name) {
-  return nn::PlanLatentModel(config.network, spec, name, StateSize(config, spec), kRewardBins);
-}
 
 }  // namespace
 
@@ -21,7 +15,7 @@ int StateSize(const Config& config, const ObservationSpec& spec) {
 }
 
 int JointSize(const Config& config, const ObservationSpec& spec) {
-  return PlanModel(config, spec, "").joint_columns();
+  return nn::PlanLatentModel(config.network, spec, "").joint_columns();
 }
 
 // The model of an untrained copy has gradients as well, because the policy's loss passes through
@@ -33,7 +27,8 @@ LatentNetworks::LatentNetworks(const Config& config, const ObservationSpec& spec
       state_(nn::PlanState(config.network, spec, names.state),
              encoder_ ? &encoder_->features() : nullptr, /*trains_encoder=*/horizon > 0,
              horizon > 0 ? Use::kTraining : Use::kInference, engine->modules()),
-      model_(PlanModel(config, spec, names.model), horizon, Use::kTraining, engine->modules()) {}
+      model_(nn::PlanLatentModel(config.network, spec, names.model), horizon, Use::kTraining,
+             engine->modules()) {}
 
 Array LatentNetworks::Encode(Frames frames, Array vector, nn::Statistics statistics) {
   if (encoder_) encoder_->Forward(frames, statistics);

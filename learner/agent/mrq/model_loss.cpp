@@ -11,8 +11,8 @@ constexpr double kLargestLog = 10;  // of a bin: log(1 + |bin|)
 
 std::vector<double> MakeBins() {
   std::vector<double> bins;
-  for (int i = 0; i < kRewardBins; ++i) {
-    const double x = kLargestLog * (2.0 * i / (kRewardBins - 1) - 1);
+  for (int i = 0; i < nn::kRewardBins; ++i) {
+    const double x = kLargestLog * (2.0 * i / (nn::kRewardBins - 1) - 1);
     bins.push_back(std::copysign(std::expm1(std::abs(x)), x));
   }
   return bins;
@@ -66,9 +66,9 @@ void AddModelLoss(const ModelStep& step, const ModelLossWeights& weights,
     losses.state[b] += float(present * squares / double(numbers));
 
     const double cross_entropy =
-        CrossEntropy(step.reward_logits.subspan(b * kRewardBins, kRewardBins),
+        CrossEntropy(step.reward_logits.subspan(b * nn::kRewardBins, nn::kRewardBins),
                      TwoHotOf(step.reward[b]), weights.reward * present / count,
-                     gradients.reward_logits.subspan(b * kRewardBins, kRewardBins));
+                     gradients.reward_logits.subspan(b * nn::kRewardBins, nn::kRewardBins));
     losses.reward[b] += float(present * cross_entropy);
 
     const double error = double{step.end[b]} - step.terminated[b];

@@ -10,16 +10,16 @@
 // two_hot divides the weight 1 between the two bins around r, so that the mean of the bins is r.
 // The bins are symexp(x) = sign(x) (exp |x| - 1) for R numbers x, evenly spaced in [-10, 10].
 //
-// Dimensions: b rows, Z numbers of a state, R bins. Source: Fujimoto et al. 2025,
+// Dimensions: b rows, Z numbers of a state, R bins (nn::kRewardBins). Source: Fujimoto et al. 2025,
 // arXiv:2501.16142, section 4.2.1 and appendix B.
 #pragma once
 
 #include <span>
 #include <vector>
 
-namespace shoal::learner {
+#include "common/nn/latent_plan.h"
 
-inline constexpr int kRewardBins = 65;
+namespace shoal::learner {
 
 // The bins in ascending order (R).
 const std::vector<double>& RewardBins();

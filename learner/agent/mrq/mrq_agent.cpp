@@ -147,7 +147,7 @@ MrqAgent::MrqAgent(const Config& config, const ObservationSpec& spec, Engine* en
   for (int h = 0; h < config.mrq.horizon; ++h) {
     target_states_.push_back(engine->NewArray(state));
     gradients_.push_back(
-        {engine->NewArray(1), engine->NewArray(state), engine->NewArray(kRewardBins)});
+        {engine->NewArray(1), engine->NewArray(state), engine->NewArray(nn::kRewardBins)});
   }
   const auto seed = uint64_t(config.seed);
   const auto start = [&](nn::Module* module) {

@@ -13,7 +13,7 @@
 namespace shoal::learner {
 namespace {
 
-constexpr char kTensor[] = "reward.scales";
+constexpr char kTensor[] = "critic.scales";
 constexpr double kLeast = 1e-8;
 
 }  // namespace
@@ -24,9 +24,8 @@ void RewardScales::Add(const BatchView& batch) {
 }
 
 void RewardScales::Advance() {
-  if (count_ == 0) return;
   target_ = critic_;
-  critic_ = std::max(kLeast, sum_ / count_);
+  if (sum_ > 0) critic_ = std::max(kLeast, sum_ / count_);
   sum_ = count_ = 0;
 }
 

@@ -16,13 +16,14 @@ class RewardScales {
   // Adds the first steps of a batch's sequences.
   void Add(const BatchView& batch);
   // The scale of the critics becomes that of their targets, and the mean of the added steps that of
-  // the critics. Does nothing if no step was added.
+  // the critics. If all rewards were 0, the scale of the critics stays, because a scale near 0
+  // would turn any later reward of the period into a huge value.
   void Advance();
 
   double critic() const { return critic_; }
   double target() const { return target_; }
 
-  // Writes and reads tensor "reward.scales". Import throws Error that names the tensor if it is
+  // Writes and reads tensor "critic.scales". Import throws Error that names the tensor if it is
   // missing or has another size.
   void Export(nn::TensorMap* tensors) const;
   void Import(const nn::TensorMap& tensors, const std::string& source);

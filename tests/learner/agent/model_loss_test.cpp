@@ -25,14 +25,14 @@ TEST(TwoHotTest, ItsMeanIsTheReward) {
 
 TEST(TwoHotTest, ARewardBeyondTheBinsBelongsToTheLastOne) {
   EXPECT_EQ(TwoHotOf(-1e9).low, 0);
-  EXPECT_EQ(TwoHotOf(1e9).low, kRewardBins - 1);
+  EXPECT_EQ(TwoHotOf(1e9).low, nn::kRewardBins - 1);
   EXPECT_EQ(TwoHotOf(-1e9).weight_of_next, 0);
   EXPECT_EQ(TwoHotOf(1e9).weight_of_next, 0);
 }
 
 TEST(TwoHotTest, TheBinsAreSymmetricAndReachE10) {
   const std::vector<double>& bins = RewardBins();
-  ASSERT_EQ(bins.size(), size_t(kRewardBins));
+  ASSERT_EQ(bins.size(), size_t(nn::kRewardBins));
   EXPECT_NEAR(bins.back(), std::exp(10.0) - 1, 1e-6);
   for (size_t i = 0; i < bins.size(); ++i) EXPECT_EQ(bins[i], -bins[bins.size() - 1 - i]);
 }
@@ -49,7 +49,7 @@ class ModelLossTest : public testing::Test {
     };
     fill(&end_, kRows);
     fill(&state_, kRows * kState);
-    fill(&logits_, kRows * kRewardBins);
+    fill(&logits_, kRows * nn::kRewardBins);
     fill(&target_, kRows * kState);
     fill(&reward_, kRows);
   }
@@ -111,7 +111,7 @@ TEST_F(ModelLossTest, TheLossOfThePredictedRewardIsLeastForTheTwoHotReward) {
   state_ = target_;
   end_ = terminated_;
   const TwoHot hot = TwoHotOf(reward_[0]);
-  for (size_t i = 0; i < kRewardBins; ++i) logits_[i] = -30;
+  for (size_t i = 0; i < nn::kRewardBins; ++i) logits_[i] = -30;
   logits_[size_t(hot.low)] = float(std::log(1 - hot.weight_of_next));
   logits_[size_t(hot.low) + 1] = float(std::log(hot.weight_of_next));
   std::vector<float> gradients;

@@ -65,6 +65,47 @@ TEST_F(NetworkStartTest, AWholeLearnersFileStartsNetworksButNotItsOptimisers) {
   EXPECT_NE(file.at("agent.updates").data, before.at("agent.updates").data);
 }
 
+// The trained copy must start from the policy as well: it replaces the policy's latent state after
+// the first period.
+TEST_F(NetworkStartTest, APolicyStartsAllCopiesOfItsLatentState) {
+  const auto agent = Make("mrq", 7), other = Make("mrq", 8);
+  const nn::TensorMap before = agent->AllTensors(), policy = other->PolicyTensors();
+  const nn::TensorMap started = StartTensors(policy, "file", *agent);
+  ASSERT_TRUE(policy.contains("actor.trunk.weight") && policy.contains("actor.mlp.output.weight"));
+  ASSERT_TRUE(started.contains("model.trunk.weight") &&
+              started.contains("model.encoder.conv0.weight"));
+  for (const auto& [name, tensor] : policy) {
+    EXPECT_EQ(started.at(name).data, tensor.data) << name;
+    const bool head = name.starts_with("actor.");
+    const std::string part = head ? name.substr(std::strlen("actor.")) : name;
+    EXPECT_EQ(started.at("target." + part).data, tensor.data) << part;
+    const auto trained = started.find("model." + part);
+    if (trained == started.end()) continue;  // the policy's last layers have no trained copy
+    EXPECT_EQ(trained->second.data, tensor.data) << part;
+  }
+  for (const char* name : {"critic.q1.layer0.weight", "model.heads.weight"}) {
+    EXPECT_EQ(started.at(name).data, before.at(name).data) << name;
+  }
+}
+
+TEST_F(NetworkStartTest, CriticsKeepTheScaleOfTheirValues) {
+  const auto agent = Make("mrq", 7), other = Make("mrq", 8);
+  const Config config = ConfigFor("mrq", 8);
+  const RandomBatch batch(SmallSpec(),
+                          {.batch = config.learner.batch, .horizon = config.mrq.horizon}, 1);
+  ASSERT_TRUE(other->Update(batch.View()).finite);
+  const nn::TensorMap file = other->AllTensors();
+  ASSERT_NE(file.at("critic.scales").data, agent->AllTensors().at("critic.scales").data);
+  EXPECT_EQ(StartTensors(file, "file", *agent).at("critic.scales").data,
+            file.at("critic.scales").data);
+}
+
+TEST_F(NetworkStartTest, ACriticsTrunkIsNotThatOfThePolicy) {
+  const nn::TensorMap started = StartTensors(other_->PolicyTensors(), "file", *agent_);
+  ASSERT_TRUE(started.contains("target.trunk.weight"));
+  EXPECT_EQ(started.at("target.trunk.weight").data, started.at("critic.trunk.weight").data);
+}
+
 TEST_F(NetworkStartTest, ATargetFollowsItsCritic) {
   nn::TensorMap weights = other_->PolicyTensors();
   weights["critic.q1.layer0.weight"] = other_->AllTensors().at("critic.q1.layer0.weight");

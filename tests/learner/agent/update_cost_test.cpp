@@ -41,6 +41,21 @@ TEST(UpdateCost, CountsTheProductsOfAllPasses) {
                    2 * 10 * (4 * critic + mean + (3 * mean + 2 * critic) / 2));
 }
 
+// Latent state of 4 from layers 3 x 4, action layer 2 x 2, joint (4 + 2) x 8 + 8 x 8, heads 8 x (1
+// + 4 + 65), policy 4 x 8 + 8 x 2, each Q 8 x 8 + 8 x 8 + 8 x 1.
+TEST(UpdateCost, WithALatentModelItCountsTheModelsSteps) {
+  Config config = SmallNetworks("mrq");
+  config.network.state_hidden = {4};
+  config.mrq.horizon = 5;
+  const double state = 3 * 4, join = 2 * 2 + 6 * 8 + 8 * 8, heads = 8 * 70;
+  const double actor = 4 * 8 + 8 * 2, critics = 2 * (64 + 64 + 8);
+  const double model_step = 3 * state + 5 * state + 5 * 3 * (join + heads);
+  const double targets = state + actor + join + critics;
+  const double value_step = state + join + 3 * critics + 3 * actor + 2 * join + 2 * critics;
+  EXPECT_DOUBLE_EQ(CostOfUpdate(config, State()).flop,
+                   2 * 10 * (model_step + targets + value_step));
+}
+
 // Actor 3 x 8 + 8 x 2, value 3 x 8 + 8 x 1, for 6 steps of 2 x 5 environments in 4 epochs.
 TEST(UpdateCost, OnPolicyItIsThatOfAWholeRollout) {
   Config config = SmallNetworks("ppo");

@@ -42,6 +42,32 @@ TEST_F(ReplayCoreTest, WhoHasKeptABatchAnswersARepeatedRequestWithIt) {
   EXPECT_EQ(core_->counters().repeated_batches, 1u);
 }
 
+TEST_F(ReplayCoreTest, ASequenceIsWholeUnlessTheTaskEnds) {
+  run_.config.learner.algorithm = "mrq";
+  run_.config.mrq.horizon = 5;
+  run_.config.replay.n_step = 1;
+  Start();
+  Store(&actor_, 1, 60);
+  int ended = 0;
+  for (uint64_t request = 1; request <= 50; ++request) {
+    Ask(request);
+    const AlignedBytes memory(core_->batch_schema().total_bytes());
+    ASSERT_TRUE(core_->TryAnswer(memory.data()));
+    const BatchView view = core_->batch_schema().View(memory.data());
+    ASSERT_EQ(view.steps.size(), 5u);
+    for (size_t b = 0; b < view.rows(); ++b) {
+      bool goes_on = true;
+      for (const StepView& step : view.steps) {
+        ASSERT_EQ(step.present[b], goes_on ? 1 : 0);
+        goes_on = goes_on && step.terminated[b] == 0;
+      }
+      ended += goes_on ? 0 : 1;
+    }
+  }
+  EXPECT_GT(ended, 0);
+  EXPECT_LT(ended, 50 * run_.config.learner.batch);
+}
+
 TEST_F(ReplayCoreTest, WordsOfAFormerLearnerAreCounted) {
   Start();
   Ask(1, 0, /*session=*/8);

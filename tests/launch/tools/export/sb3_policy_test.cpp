@@ -16,7 +16,7 @@ using testing::IsEmpty;
 using testing::Not;
 
 // A network that Stable-Baselines3 has, too.
-policy::CheckpointPolicy Counterpart(PolicyKind kind) {
+policy::CheckpointPolicy Counterpart(const PolicyKind& kind) {
   NetworkConfig network;
   network.layer_norm = false;
   network.log_std = "clamped";
@@ -78,8 +78,10 @@ TEST(Sb3Policy, WhatHasNoCounterpartIsRefusedByName) {
   EXPECT_THAT(ExportRefusal(policy), HasSubstr("learner.algorithm = averaged_ddpg"));
   EXPECT_THAT(ExportRefusal(Counterpart({"drq"})), HasSubstr("network.encoder = drq"));
   policy = Counterpart({"nature"});
-  policy.description.network.trunk = "tanh";
-  EXPECT_THAT(ExportRefusal(policy), HasSubstr("network.trunk = tanh"));
+  for (const std::string trunk : {"tanh", "elu"}) {
+    policy.description.network.trunk = trunk;
+    EXPECT_THAT(ExportRefusal(policy), HasSubstr("network.trunk = " + trunk));
+  }
   policy = Counterpart({"nature"});
   policy.description.spec.blocks[0].observed = true;
   EXPECT_THAT(ExportRefusal(policy), HasSubstr("pixels beside a vector of 4"));
