@@ -17,9 +17,10 @@ int Threads();
 // with the same pool size as at its construction, because the primitives divide their work during
 // construction.
 //
-// Meanwhile signals wait for the calling thread, and for the threads of its pool always. The
-// products of oneDNN on processors without AVX-512 move the stack pointer into a buffer on the heap
-// (jit_avx_gemm_f32), and the frame of a signal handler would overwrite the memory before it.
+// Meanwhile signals wait for the calling thread, and always for the threads of a pool that starts
+// in a scope: compute only in scopes. The products of oneDNN on processors without AVX-512 move the
+// stack pointer into a buffer on the heap (jit_avx_gemm_f32), and the frame of a signal handler
+// would overwrite the memory before it.
 class ThreadScope {
  public:
   explicit ThreadScope(int threads);
