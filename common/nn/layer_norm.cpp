@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "common/base/cpu_clones.h"
+#include "common/nn/exp_of_negative.h"
 #include "common/nn/parallel.h"
 
 namespace shoal::nn {
@@ -108,13 +109,20 @@ SHOAL_CPU_CLONES void ReluBackward(int n, const float* y, const float* dy, float
   for (int i = 0; i < n; ++i) dx[i] = y[i] > 0 ? dy[i] : 0.f;
 }
 
-void EluForward(int n, const float* x, float* y) {
-  const Eigen::Map<const Eigen::ArrayXf> in(x, n);
-  Eigen::Map<Eigen::ArrayXf>(y, n) = (in > 0).select(in, in.min(0.f).exp() - 1.f);
+SHOAL_CPU_CLONES void EluForward(int n, const float* x, float* y) {
+#pragma omp simd
+  for (int i = 0; i < n; ++i) {
+    const float positive = x[i] < 0 ? 0.f : x[i], negative = x[i] > 0 ? 0.f : x[i];
+    y[i] = positive + (ExpOfNegative(negative) - 1.f);
+  }
 }
 
 SHOAL_CPU_CLONES void EluBackward(int n, const float* y, const float* dy, float* dx) {
-  for (int i = 0; i < n; ++i) dx[i] = y[i] > 0 ? dy[i] : dy[i] * (y[i] + 1.f);
+#pragma omp simd
+  for (int i = 0; i < n; ++i) {
+    const float slope = y[i] + 1.f;
+    dx[i] = dy[i] * (slope > 1.f ? 1.f : slope);
+  }
 }
 
 void TanhForward(int n, const float* x, float* y) {

@@ -41,28 +41,16 @@ class TwoAgents {
     const std::unique_ptr<learner::Agent> one, two;
   };
 
-  // Pixels with `encoder`; vectors if it is empty.
-  Of& Get(const std::string& encoder, int batch) {
-    const std::string name = encoder + std::to_string(batch);
+  Of& Get(const std::string& name, const Config& config, const ObservationSpec& spec) {
     if (name == name_) return *agents_;
     agents_.reset();
-    Config config;
-    config.learner.batch = batch;
-    ObservationSpec spec = PixelSpec();
-    if (encoder.empty()) {
-      spec.cameras.clear();
-      spec.channels = spec.height = spec.width = 0;
-      spec.blocks = {{"observation", 13}};
-    } else {
-      config.network.encoder = encoder;
-    }
     agents_ = std::make_unique<Of>(config, spec);
     name_ = name;
     return *agents_;
   }
 
  private:
-  std::string name_ = "none";
+  std::string name_;
   std::unique_ptr<Of> agents_;
 };
 
@@ -92,31 +80,35 @@ class BusyCores {
 }  // namespace
 
 std::vector<Pairing> LearnerPairings() {
-  struct Network {
-    const char *encoder, *name;
-    int batch;
+  struct Update {
+    std::string name;
+    Config config;
+    ObservationSpec spec;
   };
+  std::vector<Update> updates;
+  for (const int batch : {128, 256}) {
+    Config config;
+    config.learner.batch = batch;
+    for (const char* encoder : {"compact", "drq", "mrq", "nature", "spatial_softmax"}) {
+      config.network.encoder = encoder;
+      updates.push_back({fmt::format("SAC update by two threads, {}, batch {}", encoder, batch),
+                         config, PixelSpec()});
+    }
+    updates.push_back({fmt::format("SAC update by two threads, vectors alone, batch {}", batch),
+                       config, VectorSpec()});
+    updates.push_back({fmt::format("MR.Q update by two threads, vectors alone, batch {}", batch),
+                       LatentModel(batch), VectorSpec()});
+  }
   const auto agents = std::make_shared<TwoAgents>();
   std::vector<Pairing> pairings;
-  for (const auto& [encoder, name, batch] : {Network{"compact", "compact", 128},
-                                             {"compact", "compact", 256},
-                                             {"drq", "drq", 128},
-                                             {"drq", "drq", 256},
-                                             {"mrq", "mrq", 128},
-                                             {"mrq", "mrq", 256},
-                                             {"nature", "nature", 128},
-                                             {"nature", "nature", 256},
-                                             {"spatial_softmax", "spatial_softmax", 128},
-                                             {"spatial_softmax", "spatial_softmax", 256},
-                                             {"", "vectors alone", 128},
-                                             {"", "vectors alone", 256}}) {
-    const auto get = [agents, encoder = std::string(encoder), batch = batch]() -> TwoAgents::Of& {
-      return agents->Get(encoder, batch);
+  for (const Update& update : updates) {
+    const auto get = [agents, update]() -> TwoAgents::Of& {
+      return agents->Get(update.name, update.config, update.spec);
     };
     for (const bool busy : {false, true}) {
       pairings.push_back(
-          {.stage = fmt::format("SAC update by two threads, {}, batch {}, {}", name, batch,
-                                busy ? "all cores but one busy" : "idle cores"),
+          {.stage =
+               fmt::format("{}, {}", update.name, busy ? "all cores but one busy" : "idle cores"),
            .unit = "updates/s",
            .against = "one thread",
            .target = busy ? kBusyTarget : kIdleTarget,

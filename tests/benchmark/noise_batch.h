@@ -10,6 +10,7 @@
 #include "common/base/aligned_bytes.h"
 #include "common/base/random.h"
 #include "common/config/config.h"
+#include "common/config/sequences.h"
 #include "common/spec/observation_spec.h"
 #include "common/wire/batch_schema.h"
 
@@ -26,10 +27,30 @@ inline ObservationSpec PixelSpec(int channels = 6) {
   return spec;
 }
 
+// Spec with 13 numbers and no pixels.
+inline ObservationSpec VectorSpec() {
+  ObservationSpec spec = PixelSpec();
+  spec.cameras.clear();
+  spec.channels = spec.height = spec.width = 0;
+  spec.blocks = {{"observation", 13}};
+  return spec;
+}
+
+// The networks of the preset state-mrq.
+inline Config LatentModel(int batch) {
+  Config config;
+  config.observation.pixels = false;
+  config.learner.algorithm = "mrq";
+  config.learner.batch = batch;
+  config.network.state_hidden = {128, 128, 128};
+  config.network.hidden = {128, 128};
+  return config;
+}
+
 // Not movable, because `batch` borrows the schema.
 struct NoiseBatch {
   NoiseBatch(const Config& config, const ObservationSpec& spec)
-      : NoiseBatch(spec, {.batch = config.learner.batch}) {}
+      : NoiseBatch(spec, {.batch = config.learner.batch, .horizon = HorizonOf(config)}) {}
   NoiseBatch(const ObservationSpec& spec, const BatchOptions& options, uint64_t seed = 1)
       : schema(spec, options) {
     Random random(seed);
@@ -49,6 +70,14 @@ struct NoiseBatch {
     fill(batch.drawn_action, -1, 1);
     fill(batch.ends, 0, 0);
     fill(batch.continues, 1, 1);
+    for (StepView& step : batch.steps) {
+      fill(step.next_frames, 0, 256);
+      fill(step.next_vector, -1, 1);
+      fill(step.action, -1, 1);
+      fill(step.reward, -0.3, 0);
+      fill(step.terminated, 0, 0);
+      fill(step.present, 1, 1);
+    }
     if (!batch.continues.empty()) batch.continues.back() = 0;
     SetLogProbs();
   }

@@ -28,7 +28,7 @@ constexpr int kUpdates = 2;                // of a call: one of them moves the a
 struct Traced {
   Traced(const Config& config, const ObservationSpec& spec)
       : noise(config, spec),
-        agent(learner::MakeAgent(config, spec, nn::ChoosePrecision("auto", /*pixels=*/true))) {
+        agent(learner::MakeAgent(config, spec, nn::ChoosePrecision("auto", spec.HasPixels()))) {
     Update();  // what happens once does not count
     trace.emplace([this] { Update(); });
   }
@@ -44,14 +44,10 @@ struct Traced {
 // The one that a row asked for last: each is large.
 class LatestTraced {
  public:
-  Traced& Get(const std::string& encoder, int batch) {
-    const std::string name = fmt::format("{} {}", encoder, batch);
+  Traced& Get(const std::string& name, const Config& config, const ObservationSpec& spec) {
     if (name != name_) {
       traced_.reset();
-      Config config;
-      config.network.encoder = encoder;
-      config.learner.batch = batch;
-      traced_ = std::make_unique<Traced>(config, PixelSpec());
+      traced_ = std::make_unique<Traced>(config, spec);
       name_ = name;
     }
     return *traced_;
@@ -62,6 +58,7 @@ class LatestTraced {
   std::unique_ptr<Traced> traced_;
 };
 
+constexpr const char* kItsPrimitives = "its primitives alone";
 constexpr const char* kPeak = "bf16 peak of one core";
 
 // "SAC update, ENCODER, batch B of (C, H, W), PRECISION".
@@ -99,12 +96,28 @@ std::vector<Pairing> UpdatePairings() {
   if (nn::Threads() > 1) return {};  // replicas on threads: their primitives never run alone
   std::vector<Pairing> pairings{PeakPairing()};
   const auto latest = std::make_shared<LatestTraced>();
+  for (const int batch : {128, 256}) {
+    const std::string stage = fmt::format("MR.Q update, vectors alone, batch {}", batch);
+    const auto get = [=]() -> Traced& {
+      return latest->Get(stage, LatentModel(batch), VectorSpec());
+    };
+    pairings.push_back({.stage = stage,
+                        .unit = "updates/s",
+                        .against = kItsPrimitives,
+                        .units_per_call = kUpdates,
+                        .ours = [get] { get().Update(); },
+                        .other = [get] { get().trace->Run(); }});
+  }
   for (const std::string encoder : {"compact", "drq", "mrq", "nature", "spatial_softmax"}) {
     for (const int batch : {128, 256}) {
-      const auto get = [=]() -> Traced& { return latest->Get(encoder, batch); };
-      Pairing pairing{.stage = StageOf(encoder, batch),
+      const std::string stage = StageOf(encoder, batch);
+      Config config;
+      config.network.encoder = encoder;
+      config.learner.batch = batch;
+      const auto get = [=]() -> Traced& { return latest->Get(stage, config, PixelSpec()); };
+      Pairing pairing{.stage = stage,
                       .unit = "updates/s",
-                      .against = "its primitives alone",
+                      .against = kItsPrimitives,
                       .units_per_call = kUpdates,
                       .target = kPrimitivesTarget,
                       .ours = [get] { get().Update(); },

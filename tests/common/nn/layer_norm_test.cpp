@@ -103,6 +103,18 @@ TEST(Elu, AgreesWithTheLibraryAndItsGradientWithCentralDifferences) {
   EXPECT_EQ(x, y) << "in place";
 }
 
+TEST(Elu, LetsNanThroughAndEndsAtMinusOne) {
+  const std::vector<float> x{NAN, -1000.f, -INFINITY, 3e38f};
+  std::vector<float> y(4), dx(4);
+  const std::vector<float> ones(4, 1.f);
+  EluForward(4, x.data(), y.data());
+  EXPECT_TRUE(std::isnan(y[0]));
+  EXPECT_EQ(std::vector<float>(y.begin() + 1, y.end()), (std::vector<float>{-1, -1, 3e38f}));
+  EluBackward(4, y.data(), ones.data(), dx.data());
+  EXPECT_TRUE(std::isnan(dx[0]));
+  EXPECT_EQ(std::vector<float>(dx.begin() + 1, dx.end()), (std::vector<float>{0, 0, 1}));
+}
+
 TEST(Tanh, AgreesWithTheLibraryAndItsGradientWithCentralDifferences) {
   std::vector<float> x, y(201), dx(201), ones(201, 1.f);
   for (int i = -100; i <= 100; ++i) x.push_back(static_cast<float>(i) * 0.1f);
