@@ -197,7 +197,7 @@ std::vector<Key> LearnerKeys() {
                 "run measures at its beginning how to divide its cores between learner and actors. "
                 "Otherwise the learner gets at most half of the cores that this process may use; "
                 "three quarters if every eighth env step has an update, all if every env step has "
-                "one; without pixels (except ppo) it gets 1"),
+                "one; without pixels (except ppo and mrq) it gets 1"),
       SHOAL_KEY(learner.learning_rate, positive,
                 "learning rate of Adam for actor, critic and temperature"),
       SHOAL_KEY(learner.actor_learning_rate, (RealRange{0, 1}),

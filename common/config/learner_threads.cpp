@@ -5,6 +5,7 @@
 
 #include "common/base/error.h"
 #include "common/config/on_policy.h"
+#include "common/config/sequences.h"
 
 namespace shoal {
 namespace {
@@ -27,9 +28,9 @@ bool UpdatesEach(const Config& config, int env_steps) {
 
 int Half(int cores) { return std::max(1, cores / 2); }
 
-// An update from pixels takes as long as some tens of env steps, so actors wait for it. With an
-// update for each step they wait nearly always. One for every eighth step takes three times as long
-// as these steps.
+// An update from pixels, or of sequences, takes as long as some tens of env steps, so actors wait
+// for it. With an update for each step they wait nearly always. One for every eighth step takes
+// three times as long as these steps.
 int MostCores(const Config& config, int cores) {
   if (UpdatesEach(config, 1)) return cores;
   if (UpdatesEach(config, 8)) return (3 * cores + 3) / 4;
@@ -46,7 +47,7 @@ int LearnerThreads(const Config& config, int cores) {
   if (config.learner.threads > 0) return config.learner.threads;
   if (config.learner.device == "cuda") return 1;
   if (LearnsOnPolicy(config)) return Half(cores);
-  if (!config.observation.pixels) return 1;
+  if (!config.observation.pixels && HorizonOf(config) == 0) return 1;
   const int useful = std::max(1, config.learner.batch / kLeastRows);
   return std::min({MostCores(config, cores), useful, Groups(config)});
 }

@@ -15,7 +15,8 @@ namespace shoal {
 //   cores, because the actors mostly wait. The rate of updates is the mean of
 //   replay.samples_per_insert over the budget of env steps. Each thread must have at least 16 rows
 //   of the batch.
-// - Off policy without pixels: 1, because updates are too short for threads to wait for each other.
+// - Off policy without pixels: 1, because updates are too short for threads to wait for each other,
+//   except those of sequences (mrq).
 int LearnerThreads(const Config& config, int cores);
 
 // Largest useful number of threads. Each thread must have at least 8 rows of a batch, and all

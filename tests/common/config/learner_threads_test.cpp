@@ -65,10 +65,12 @@ TEST(LearnerThreads, OfAScheduleGoByItsMeanOverTheBudget) {
   EXPECT_EQ(LearnerThreads(config, 8), 4);
 }
 
-TEST(LearnerThreads, IsOneWithoutPixels) {
+TEST(LearnerThreads, IsOneWithoutPixelsUnlessUpdatesAreOfSequences) {
   Config config = Of(0, 128);
   config.observation.pixels = false;
   EXPECT_EQ(LearnerThreads(config, 8), 1);
+  config.learner.algorithm = "mrq";
+  EXPECT_EQ(LearnerThreads(config, 8), 4);
 }
 
 TEST(LearnerThreads, OfAnOnPolicyRunAreHalfTheCores) {
