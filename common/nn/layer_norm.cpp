@@ -111,18 +111,12 @@ SHOAL_CPU_CLONES void ReluBackward(int n, const float* y, const float* dy, float
 
 SHOAL_CPU_CLONES void EluForward(int n, const float* x, float* y) {
 #pragma omp simd
-  for (int i = 0; i < n; ++i) {
-    const float positive = x[i] < 0 ? 0.f : x[i], negative = x[i] > 0 ? 0.f : x[i];
-    y[i] = positive + (ExpOfNegative(negative) - 1.f);
-  }
+  for (int i = 0; i < n; ++i) y[i] = x[i] > 0 ? x[i] : ExpOfNegative(x[i]) - 1.f;
 }
 
 SHOAL_CPU_CLONES void EluBackward(int n, const float* y, const float* dy, float* dx) {
 #pragma omp simd
-  for (int i = 0; i < n; ++i) {
-    const float slope = y[i] + 1.f;
-    dx[i] = dy[i] * (slope > 1.f ? 1.f : slope);
-  }
+  for (int i = 0; i < n; ++i) dx[i] = y[i] > 0 ? dy[i] : dy[i] * (y[i] + 1.f);
 }
 
 void TanhForward(int n, const float* x, float* y) {
