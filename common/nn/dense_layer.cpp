@@ -2,6 +2,7 @@
 #include "common/nn/dense_layer.h"
 
 #include "common/base/check.h"
+#include "common/nn/activations.h"
 #include "common/nn/layer_norm.h"
 
 namespace shoal::nn {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// LayerNorm over the columns of each row, and the activations that follow it.
+// LayerNorm over the columns of each row.
 //
 //   mean_b = sum_j x[b, j] / N,   var_b = sum_j (x[b, j] - mean_b)^2 / N
 //   xhat[b, j] = (x[b, j] - mean_b) * rstd_b,   rstd_b = 1 / sqrt(var_b + 1e-5)
@@ -40,20 +40,5 @@ void LayerNormBackward(const RowShape& shape, const float* dy, const NormWeights
 //   dweight_j = sum_b dy[b, j] xhat[b, j],   dbias_j = sum_b dy[b, j]
 void LayerNormBackwardWeights(const RowShape& shape, const float* dy, const float* xhat,
                               float* dweight, float* dbias);
-
-// y = max(x, 0); NaN stays NaN.
-void ReluForward(int n, const float* x, float* y);
-// dx = dy where y > 0, else 0. dx may be dy.
-void ReluBackward(int n, const float* y, const float* dy, float* dx);
-
-// y = x where x > 0, else exp(x) - 1; y may be x. Absolute error below 1e-6.
-void EluForward(int n, const float* x, float* y);
-// dx = dy where y > 0, else dy * (y + 1). dx may be dy.
-void EluBackward(int n, const float* y, const float* dy, float* dx);
-
-// y = tanh(x); y may be x. Absolute error below 1e-6.
-void TanhForward(int n, const float* x, float* y);
-// dx = dy * (1 - y^2). dx may be dy.
-void TanhBackward(int n, const float* y, const float* dy, float* dx);
 
 }  // namespace shoal::nn

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "common/nn/activations.h"
 #include "common/nn/layer_norm.h"
 #include "learner/device/kernels/layer_norm.h"
 #include "tests/learner/device/kernels/kernel_fixture.h"
