@@ -135,6 +135,7 @@ struct NetworkConfig {
   int features = 0;                           // outputs of the trunk; 0 = the encoder's own
   std::vector<int> state_hidden;              // layers from observation to latent state (mrq)
   std::vector<int> hidden{256, 256};          // MLPs of actor and critics
+  int blocks = 0;                             // residual blocks of the MLPs
   bool layer_norm = true;                     // after each hidden layer of the MLPs
   std::string activation = "relu";            // relu | tanh | elu: activation of the hidden layers
   std::string log_std = "smooth";             // smooth | clamped: method that bounds the deviation

@@ -408,6 +408,10 @@ std::vector<Key> NetworkKeys() {
           "mrq: layers with LayerNorm and ELU between trunk and vector and the latent state; [] "
           "= the state is [trunk | vector]"),
       SHOAL_KEY(network.hidden, (IntegerRange{1, 65'536}), "hidden layers of actor and critics"),
+      SHOAL_KEY(network.blocks, (IntegerRange{0, 16}),
+                "residual blocks of actor and critics, as in SimBa, after a linear layer of "
+                "network.hidden = [N]: LayerNorm, linear layer of 4 N, activation, linear layer of "
+                "N; LayerNorm after the last block; 0 = no blocks"),
       SHOAL_KEY(network.layer_norm, AnyValue{}, "LayerNorm after each hidden layer"),
       SHOAL_KEY(network.activation, (Choices{{"relu", "tanh", "elu"}}),
                 "activation of each hidden layer"),

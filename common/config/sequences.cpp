@@ -49,7 +49,8 @@ void ValidateSequences(const Config& config) {
       {"learner.target_period", learner.target_period != usual.learner.target_period},
       {"learner.bounded_targets", learner.bounded_targets},
       {"learner.normalise_vectors", learner.normalise_vectors},
-      {"replay.copies", config.replay.copies != usual.replay.copies}};
+      {"replay.copies", config.replay.copies != usual.replay.copies},
+      {"network.blocks", config.network.blocks != usual.network.blocks}};
   for (const auto& [key, is_set] : unused) {
     if (!is_set) continue;
     throw UsageError("{}: learner.algorithm = {} does not use it; expected it unset", key,

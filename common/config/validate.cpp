@@ -154,6 +154,23 @@ void ValidateCompact(const NetworkConfig& network) {
                    network.encoder);
 }
 
+// Checks the layers of residual blocks.
+void ValidateBlocks(const NetworkConfig& network) {
+  if (network.blocks == 0) return;
+  if (network.hidden.size() != 1) {
+    throw UsageError(
+        "network.hidden: with network.blocks = {}, all blocks have one width; expected one number, "
+        "for example [256]",
+        network.blocks);
+  }
+  if (!network.layer_norm) {
+    throw UsageError(
+        "network.layer_norm = false: residual blocks have a LayerNorm; expected true "
+        "with network.blocks = {}",
+        network.blocks);
+  }
+}
+
 // Checks the keys of encoders besides the critic's.
 void ValidateEncoders(const Config& config) {
   const NetworkConfig usual;
@@ -308,6 +325,7 @@ void Validate(const Config& config) {
   ValidateVectors(config);
   ValidateExploration(config);
   ValidateCompact(config.network);
+  ValidateBlocks(config.network);
   if (!LearnsOnPolicy(config)) ValidateEntropy(config);
   if (config.run_dir.empty()) throw UsageError("run_dir = \"\": expected a folder");
   if (config.transport.interface.empty()) {

@@ -8,13 +8,16 @@
 //   ENCODER.conv{i}.{weight, bias}                                   only with pixels
 //   HEAD.trunk.{weight, bias, norm.weight, norm.bias}                only with pixels
 //   MLP.layer{i}.{weight (H_i, H_{i-1}), bias, norm.weight, norm.bias}
+//   MLP.block{i}.{norm.{weight, bias}, layer0.{weight (4 H, H), bias}, layer1.{weight (H, 4 H),
+//   bias}}, MLP.norm.{weight, bias}                                  only with network.blocks
 //   MLP.output.{weight (outputs, H), bias (outputs)}
 //   HEAD.log_std (A)                                                 unsquashed actor only
 //
 // HEAD is an actor or a critic. MLP is HEAD.mlp in an actor and HEAD.q1, HEAD.q2, ... in a critic.
 // The layers of network.state_hidden are the first layers of an actor's MLP.
 // A policy consists of the encoder "encoder" and the actor "actor". The trunk has norm.* if it has
-// a LayerNorm; the layers of an MLP have norm.* if network.layer_norm is set.
+// a LayerNorm; the layers of an MLP have norm.* if network.layer_norm is set and network.blocks is
+// 0.
 #pragma once
 
 #include <cstdint>

@@ -9,11 +9,12 @@ namespace shoal::nn {
 
 DenseLayer::DenseLayer(const LayerContext& context, const LayerPlan& plan,
                        const dnnl::memory& source, const dnnl::memory& source_gradient,
-                       Precision output_precision)
+                       Precision output_precision, const Rows* skip)
     : linear_(context, plan.name, source, source_gradient, output_precision),
+      skip_(skip),
       activation_(plan.activation),
       has_norm_(plan.layer_norm) {
-  CHECK(activation_ != Activation::kNone) << plan.name << ": a linear layer alone is a Linear";
+  CHECK(skip == nullptr || (!has_norm_ && skip->size() == output().size())) << plan.name;
   if (!has_norm_) return;
   norm_weight_ = context.parameters->Find(plan.name + ".norm.weight");
   norm_bias_ = context.parameters->Find(plan.name + ".norm.bias");
@@ -29,6 +30,9 @@ void DenseLayer::Forward() {
     LayerNormForward({output.batch(), output.columns()}, y,
                      {norm_weight_.value(), norm_bias_.value()}, normalised_.data(), scales_.data(),
                      y);
+  }
+  if (skip_ != nullptr) {
+    for (int i = 0; i < output.size(); ++i) y[i] += skip_->values()[i];
   }
   switch (activation_) {
     case Activation::kNone:

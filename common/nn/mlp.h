@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Multi-layer perceptron: hidden layers (linear, LayerNorm if configured, ReLU) and a linear
-// output. The first layer is computed in the type of its input, the inner layers in the network's
-// precision, and the output layer in f32.
+// Multi-layer perceptron: hidden layers and a linear output. The first layer is computed in the
+// type of its input, the inner layers in the network's precision, and the output layer in f32.
+// LayerNorms are computed in f32.
 #pragma once
 
 #include <memory>
 #include <vector>
 
-#include "common/nn/dense_layer.h"
+#include "common/nn/hidden_layer.h"
 #include "common/nn/layer_context.h"
 #include "common/nn/linear.h"
 #include "common/nn/rows.h"
@@ -31,8 +31,18 @@ class Mlp {
   void Backward(const float* output_gradient, Gradients wanted);
 
  private:
+  struct Hidden {
+    std::unique_ptr<HiddenLayer> layer;
+    // Later layer that adds this layer's input to its own output; null if there is none. Its
+    // gradient is added to the gradient of the input.
+    HiddenLayer* skipping = nullptr;
+  };
+
+  // Type in which hidden layer `i` stores its output for the next layer.
+  static Precision OutputPrecision(const NetworkPlan& plan, size_t i, Precision inner);
+
   Rows input_gradient_;
-  std::vector<std::unique_ptr<DenseLayer>> hidden_;
+  std::vector<Hidden> hidden_;
   std::unique_ptr<Linear> output_;
 };
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/nn/mlp_plan.h"
 
+#include <cmath>
+#include <numbers>
+
 #include "common/nn/actor_critic_plan.h"
 #include "common/nn/encoders/encoder_kind.h"
 
@@ -11,6 +14,36 @@ namespace {
 Activation ActivationOf(const std::string& word) {
   if (word == "tanh") return Activation::kTanh;
   return word == "elu" ? Activation::kElu : Activation::kRelu;
+}
+
+// Number of units inside a block for each of its outputs.
+constexpr int kBlockExpansion = 4;
+
+// Appends network.blocks residual blocks over the last layer, and a LayerNorm (Lee et al. 2024,
+// arXiv:2410.09754, section 4.2). The gains give orthogonal weights the variance of He et al. 2015
+// (arXiv:1502.01852, fan-in), with which the paper's blocks start.
+void AddBlocks(const NetworkConfig& network, const std::string& name, NetworkPlan* plan) {
+  const int width = plan->output().channels;
+  const auto linear = [&](const std::string& layer, int outputs) {
+    return NetworkPlan::Linear{.name = layer,
+                               .key = "network.blocks",
+                               .outputs = outputs,
+                               .initialisation = InitialisationOf(network)};
+  };
+  int stream = int(plan->layers().size()) - 1;
+  for (int i = 0; i < network.blocks; ++i) {
+    const std::string block = name + ".block" + std::to_string(i);
+    plan->Add(NetworkPlan::LayerNorm{.name = block + ".norm", .key = "network.blocks"});
+    NetworkPlan::Linear inner = linear(block + ".layer0", kBlockExpansion * width);
+    inner.activation = ActivationOf(network.activation);
+    inner.gain = std::sqrt(2.0 * kBlockExpansion);
+    plan->Add(inner);
+    NetworkPlan::Linear outer = linear(block + ".layer1", width);
+    outer.gain = std::numbers::sqrt2;
+    outer.skip = stream;
+    stream = plan->Add(outer);
+  }
+  plan->Add(NetworkPlan::LayerNorm{.name = name + ".norm", .key = "network.blocks"});
 }
 
 }  // namespace
@@ -43,16 +76,18 @@ void AddStateLayers(const NetworkConfig& network, const std::string& name, Netwo
 }
 
 void AddMlp(const NetworkConfig& network, const MlpLayers& layers, int outputs, NetworkPlan* plan) {
+  const bool has_blocks = network.blocks > 0;
   for (size_t i = 0; i < network.hidden.size(); ++i) {
-    plan->Add(
-        NetworkPlan::Linear{.name = layers.name + ".layer" + std::to_string(layers.first + int(i)),
-                            .key = "network.hidden",
-                            .outputs = network.hidden[i],
-                            .layer_norm = network.layer_norm,
-                            .activation = ActivationOf(network.activation),
-                            .initialisation = InitialisationOf(network),
-                            .gain = layers.hidden_gain});
+    plan->Add(NetworkPlan::Linear{
+        .name = layers.name + ".layer" + std::to_string(layers.first + int(i)),
+        .key = "network.hidden",
+        .outputs = network.hidden[i],
+        .layer_norm = network.layer_norm && !has_blocks,
+        .activation = has_blocks ? Activation::kNone : ActivationOf(network.activation),
+        .initialisation = InitialisationOf(network),
+        .gain = layers.hidden_gain});
   }
+  if (has_blocks) AddBlocks(network, layers.name, plan);
   plan->Add(NetworkPlan::Linear{.name = layers.name + ".output",
                                 .key = "network.hidden",
                                 .outputs = outputs,

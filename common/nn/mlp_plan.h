@@ -23,7 +23,8 @@ struct MlpLayers {
   int first = 0;                            // number of the first hidden layer
   double hidden_gain = 1, output_gain = 1;  // of orthogonal weights
 };
-// Appends the hidden layers of network.hidden, and a linear layer with `outputs` outputs.
+// Appends the hidden layers of network.hidden and network.blocks, and a linear layer with `outputs`
+// outputs.
 void AddMlp(const NetworkConfig& network, const MlpLayers& layers, int outputs, NetworkPlan* plan);
 
 }  // namespace shoal::nn

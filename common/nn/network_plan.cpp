@@ -45,6 +45,10 @@ void CheckWindow(const MapShape& from, int kernel, int padding, const std::strin
 }  // namespace
 
 std::vector<ParameterSpec> LayerPlan::Parameters() const {
+  if (kind == Kind::kLayerNorm) {
+    return {{name + ".weight", {output.channels}, {Start::Kind::kOnes}},
+            {name + ".bias", {output.channels}, {Start::Kind::kZeros}}};
+  }
   if (kind != Kind::kConvolution && kind != Kind::kLinear) return {};
   const int64_t outputs = output.channels;
   std::vector<int64_t> weight{outputs, input.channels};
@@ -162,6 +166,10 @@ int NetworkPlan::Add(const Linear& linear) {
                      layers_.empty() ? linear.key : layers_.back().key, linear.name, inputs,
                      std::numeric_limits<int>::max());
   }
+  const int skip = linear.skip;
+  CHECK(skip == kNoLayer ||
+        (!linear.layer_norm && layers_.at(size_t(skip)).output == MapShape{linear.outputs}))
+      << linear.name;
   return Append({.kind = LayerPlan::Kind::kLinear,
                  .name = linear.name,
                  .key = linear.key,
@@ -169,9 +177,19 @@ int NetworkPlan::Add(const Linear& linear) {
                  .output = {linear.outputs},
                  .source = int(layers_.size()) - 1,
                  .layer_norm = linear.layer_norm,
+                 .skip = skip,
                  .activation = linear.activation,
                  .initialisation = linear.initialisation,
                  .gain = linear.gain});
+}
+
+int NetworkPlan::Add(const LayerNorm& norm) {
+  return Append({.kind = LayerPlan::Kind::kLayerNorm,
+                 .name = norm.name,
+                 .key = norm.key,
+                 .input = output(),
+                 .output = output(),
+                 .source = int(layers_.size()) - 1});
 }
 
 std::vector<ParameterSpec> NetworkPlan::Parameters() const {

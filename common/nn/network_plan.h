@@ -12,11 +12,12 @@
 //   average pool  (C, H, W) -> (C, h, w)                    for any H and W
 //   spatial softmax  (C, H, W) -> (C, 1, 2)   position of each channel's peak: spatial_softmax.h
 //   linear        all numbers of its input in row-major order -> (O)     weight (O, I), bias (O)
+//   layer norm    (I) -> (I): layer_norm.h                               weight (I), bias (I)
 //
 // A linear layer may be followed by LayerNorm over its outputs (norm.weight, norm.bias). A
 // convolution may be followed by batch normalisation of its channels (weight, bias, running_mean,
-// running_var, all (N)). The output of an earlier layer may be added to the normalised map. The
-// activation is the last operation.
+// running_var, all (N)). The output of an earlier layer may be added to the normalised map, or to
+// the output of a linear layer without LayerNorm. The activation is the last operation.
 #pragma once
 
 #include <cstdint>
@@ -70,7 +71,15 @@ enum class PixelRange { kCentred, kUnit };
 inline constexpr int kPreviousLayer = -1, kNoLayer = -1;
 
 struct LayerPlan {
-  enum class Kind { kPixels, kConvolution, kMaxPool, kAveragePool, kSpatialSoftmax, kLinear };
+  enum class Kind {
+    kPixels,
+    kConvolution,
+    kMaxPool,
+    kAveragePool,
+    kSpatialSoftmax,
+    kLinear,
+    kLayerNorm
+  };
 
   Kind kind = Kind::kLinear;
   std::string name;       // prefix of its parameters: NAME.weight, NAME.bias, NAME.norm.*
@@ -84,7 +93,7 @@ struct LayerPlan {
   bool bias = true;
   bool layer_norm = false;
   std::string batch_norm = {};  // prefix of the names BATCH_NORM.weight, ...; empty: no batch norm
-  int skip = kNoLayer;          // layer whose output is added after batch normalisation
+  int skip = kNoLayer;          // layer whose output is added before the activation
   Activation activation = Activation::kNone;
   Initialisation initialisation = Initialisation::kOrthogonal;
   double gain = 1;  // scale of an orthogonal weight
@@ -134,8 +143,13 @@ class NetworkPlan {
     Activation activation = Activation::kNone;
     Initialisation initialisation = Initialisation::kOrthogonal;
     double gain = 1;
+    int skip = kNoLayer;  // layer of as many outputs; needs layer_norm = false
   };
   int Add(const Linear& linear);
+  struct LayerNorm {
+    std::string name, key;
+  };
+  int Add(const LayerNorm& norm);
 
   const std::vector<LayerPlan>& layers() const { return layers_; }
   const MapShape& input() const { return input_; }

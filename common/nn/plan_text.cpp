@@ -20,6 +20,8 @@ const char* KindName(LayerPlan::Kind kind) {
       return "spatial softmax";
     case LayerPlan::Kind::kLinear:
       return "linear";
+    case LayerPlan::Kind::kLayerNorm:
+      return "layer norm";
   }
   return "";
 }

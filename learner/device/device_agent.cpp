@@ -47,6 +47,10 @@ void CheckComputes(const Config& config) {
     throw UsageError("sac.quantiles = {}: a device does not compute quantiles, expected 0",
                      config.sac.quantiles);
   }
+  if (config.network.blocks != 0) {
+    throw UsageError("network.blocks = {}: a device does not compute residual blocks, expected 0",
+                     config.network.blocks);
+  }
 }
 
 std::unique_ptr<Agent> MakeDeviceAgent(const Config& config, const ObservationSpec& spec,

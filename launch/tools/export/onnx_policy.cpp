@@ -129,7 +129,9 @@ class GraphWriter {
       case LayerPlan::Kind::kSpatialSoftmax:
         return AddSpatialSoftmax(layer, source);
       case LayerPlan::Kind::kLinear:
-        return AddLinear(layer, source);
+        return AddLinear(layer, source, skip);
+      case LayerPlan::Kind::kLayerNorm:
+        return AddLayerNorm(layer.name, source);
     }
     CHECK(false) << layer.name;
     return "";
@@ -209,15 +211,19 @@ class GraphWriter {
     return Add("Div", {Add("Add", {across, down}), sum});
   }
 
-  std::string AddLinear(const LayerPlan& layer, const std::string& source) {
+  std::string AddLinear(const LayerPlan& layer, const std::string& source,
+                        const std::string& skip) {
     std::string value = Add("Gemm", {source, layer.name + ".weight", layer.name + ".bias"},
                             {{"transB", int64_t{1}}});
-    if (layer.layer_norm) {
-      value =
-          Add("LayerNormalization", {value, layer.name + ".norm.weight", layer.name + ".norm.bias"},
-              {{"axis", int64_t{-1}}, {"epsilon", kNormEpsilon}});
-    }
+    if (layer.layer_norm) value = AddLayerNorm(layer.name + ".norm", value);
+    if (!skip.empty()) value = Add("Add", {value, skip});
     return Activate(layer.activation, value);
+  }
+
+  // `name`: prefix of the parameters.
+  std::string AddLayerNorm(const std::string& name, const std::string& source) {
+    return Add("LayerNormalization", {source, name + ".weight", name + ".bias"},
+               {{"axis", int64_t{-1}}, {"epsilon", kNormEpsilon}});
   }
 
   OnnxModel& model_;

@@ -63,6 +63,7 @@ void RefuseWithoutCounterpart(const policy::PolicyDescription& policy, const nn:
   const auto refuse = [](const std::string& what, const char* expected) {
     throw UsageError("{} has no counterpart in Stable-Baselines3: expected {}", what, expected);
   };
+  if (network.blocks > 0) refuse(fmt::format("network.blocks = {}", network.blocks), "0");
   if (network.layer_norm) refuse("network.layer_norm = true", "false");
   if (!policy.spec.HasPixels()) return;
   if (network.encoder != "nature") refuse("network.encoder = " + network.encoder, "nature");

@@ -222,6 +222,25 @@ TEST(Validate, QuantilesAreMoreThanAreDroppedAndHaveRulesOfTheirOwn) {
               HasSubstr("sac.quantiles belongs to learner.algorithm = sac"));
 }
 
+TEST(Validate, ResidualBlocksHaveOneWidthAndALayerNorm) {
+  const auto refusal = [](const std::vector<int>& hidden, bool layer_norm) {
+    return Refusal([&](Config* c) {
+      c->network.blocks = 2;
+      c->network.hidden = hidden;
+      c->network.layer_norm = layer_norm;
+    });
+  };
+  EXPECT_EQ(refusal({32}, true), "");
+  for (const std::vector<int>& hidden : {std::vector<int>{}, std::vector<int>{32, 32}}) {
+    EXPECT_EQ(refusal(hidden, true),
+              "network.hidden: with network.blocks = 2, all blocks have one width; expected one "
+              "number, for example [256]");
+  }
+  EXPECT_EQ(refusal({32}, false),
+            "network.layer_norm = false: residual blocks have a LayerNorm; expected true with "
+            "network.blocks = 2");
+}
+
 TEST(Validate, TheTargetEntropyIsSetInOneWay) {
   EXPECT_EQ(Refusal([](Config* c) { c->sac.target_entropy = -3; }), "");
   EXPECT_EQ(Refusal([](Config* c) { c->sac.target_entropy_per_action = 0; }), "");

@@ -10,6 +10,8 @@
 #include "common/config/config_io.h"
 #include "common/nn/actor_critic_plan.h"
 #include "common/nn/encoders/encoder_kind.h"
+#include "common/nn/parameter_set.h"
+#include "common/nn/plan_text.h"
 
 namespace shoal::nn {
 namespace {
@@ -262,6 +264,52 @@ TEST(ActorCriticPlan, DefaultNetworkHasTheseParameters) {
   EXPECT_EQ(texts[18], "actor.mlp.output.weight 6 256");
   EXPECT_EQ(texts[24], "critic.q1.layer0.weight 256 53");
   EXPECT_EQ(texts.back(), "critic.q2.output.bias 1");
+}
+
+TEST(ActorCriticPlan, ResidualBlocksFollowOneLinearLayer) {
+  NetworkConfig network;
+  network.hidden = {8};
+  network.blocks = 1;
+  ObservationSpec spec;
+  spec.blocks = {{"joints", 3}};
+  spec.action_size = 2;
+  const NetworkPlan mlp = PlanCritic(network, spec, "critic").mlps[0];
+  std::vector<std::string> lines;
+  for (const LayerPlan& layer : mlp.layers()) lines.push_back(PlanLine(layer));
+  EXPECT_THAT(
+      lines,
+      ElementsAre("critic.q1.layer0: linear, 5x1x1 to 8x1x1, bias",
+                  "critic.q1.block0.norm: layer norm of layer 0, 8x1x1 to 8x1x1, bias",
+                  "critic.q1.block0.layer0: linear of layer 1, 8x1x1 to 32x1x1, bias, relu",
+                  "critic.q1.block0.layer1: linear of layer 2, 32x1x1 to 8x1x1, bias, plus layer 0",
+                  "critic.q1.norm: layer norm of layer 3, 8x1x1 to 8x1x1, bias",
+                  "critic.q1.output: linear of layer 4, 8x1x1 to 1x1x1, bias"));
+  EXPECT_THAT(Texts(mlp.Parameters()),
+              ElementsAre("critic.q1.layer0.weight 8 5", "critic.q1.layer0.bias 8",
+                          "critic.q1.block0.norm.weight 8", "critic.q1.block0.norm.bias 8",
+                          "critic.q1.block0.layer0.weight 32 8", "critic.q1.block0.layer0.bias 32",
+                          "critic.q1.block0.layer1.weight 8 32", "critic.q1.block0.layer1.bias 8",
+                          "critic.q1.norm.weight 8", "critic.q1.norm.bias 8",
+                          "critic.q1.output.weight 1 8", "critic.q1.output.bias 1"));
+}
+
+// The paper's blocks start with weights of variance 2 / inputs.
+TEST(ActorCriticPlan, WeightsOfResidualBlocksStartWithTheVarianceOfHe) {
+  NetworkConfig network;
+  network.hidden = {64};
+  network.blocks = 1;
+  ObservationSpec spec;
+  spec.blocks = {{"joints", 3}};
+  spec.action_size = 2;
+  ParameterSet parameters(PlanCritic(network, spec, "critic").Parameters(),
+                          ParameterSet::Use::kTraining);
+  parameters.Initialise(1);
+  for (const auto& [name, inputs] : {std::pair("layer0", 64), std::pair("layer1", 256)}) {
+    const Parameter weight = parameters.Find(std::string("critic.q1.block0.") + name + ".weight");
+    double squares = 0;
+    for (int i = 0; i < 64 * 256; ++i) squares += double(weight.value()[i]) * weight.value()[i];
+    EXPECT_NEAR(squares / (64 * 256), 2.0 / inputs, 1e-6) << name;
+  }
 }
 
 TEST(ActorCriticPlan, NatureHasALinearReluTrunkOf512UnlessToldOtherwise) {

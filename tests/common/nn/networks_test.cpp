@@ -15,19 +15,23 @@ class NetworksTest : public NetworkTest {
  protected:
   void CompareActor() {
     ActorHead actor(Context(*parameters_, kBatch), PlanActor(network_, spec_), features(), {});
-    actor.Refresh();
-    actor.Forward(ToFloats(vector_).data());
-    const auto exact = reference_->Actor(kBatch, features_, vector_);
+    CompareOutputs(&actor);
     const size_t n = size_t(kBatch) * spec_.action_size;
-    EXPECT_LT(RelativeError({actor.mean(), n}, exact.mean), Tolerance(GetParam()));
-    EXPECT_LT(RelativeError({actor.log_std(), n}, exact.log_std), Tolerance(GetParam()));
-
     const Values dmean = RandomValues(n, 6), dlog_std = RandomValues(n, 7);
     actor.Backward(ToFloats(dmean).data(), ToFloats(dlog_std).data());
     ExpectGradients("actor.", [&] {
       const auto gaussian = reference_->Actor(kBatch, features_, vector_);
       return Dot(dmean, gaussian.mean) + Dot(dlog_std, gaussian.log_std);
     });
+  }
+
+  void CompareOutputs(ActorHead* actor) {
+    actor->Refresh();
+    actor->Forward(ToFloats(vector_).data());
+    const auto exact = reference_->Actor(kBatch, features_, vector_);
+    const size_t n = size_t(kBatch) * spec_.action_size;
+    EXPECT_LT(RelativeError({actor->mean(), n}, exact.mean), Tolerance(GetParam()));
+    EXPECT_LT(RelativeError({actor->log_std(), n}, exact.log_std), Tolerance(GetParam()));
   }
 
   void CompareCritic() {
@@ -93,9 +97,32 @@ TEST_P(NetworksTest, CriticAgreesWithTheReferenceOnTheVectorAlone) {
   CompareCritic();
 }
 
+NetworkConfig NetworkOfBlocks() {
+  NetworkConfig network = OddNetwork();
+  network.hidden = {6};
+  network.blocks = 2;
+  return network;
+}
+
+TEST_P(NetworksTest, OutputsAgreeWithTheReferenceWithResidualBlocks) {
+  Build(/*pixels=*/true, NetworkOfBlocks());
+  ActorHead actor(Context(*parameters_, kBatch), PlanActor(network_, spec_), features(), {});
+  CompareOutputs(&actor);
+}
+
 // Only in f32: without LayerNorm, a ReLU that is on the other side in bf16 has too much weight for
-// a comparison.
+// a comparison of gradients.
 class NetworksF32Test : public NetworksTest {};
+
+TEST_P(NetworksF32Test, ActorAgreesWithTheReferenceWithResidualBlocks) {
+  Build(/*pixels=*/false, NetworkOfBlocks());
+  CompareActor();
+}
+
+TEST_P(NetworksF32Test, CriticAgreesWithTheReferenceWithResidualBlocks) {
+  Build(/*pixels=*/true, NetworkOfBlocks());
+  CompareCritic();
+}
 
 TEST_P(NetworksF32Test, CriticAgreesWithTheReferenceWithoutLayerNormInTheMlps) {
   NetworkConfig network = OddNetwork();

@@ -142,16 +142,28 @@ Values Network::Observation(const std::string& head, int batch, const Values& fe
   return Beside(batch, Tanh(z), vector);
 }
 
+Values Network::Blocks(const std::string& name, int batch, Values x) const {
+  for (int i = 0; i < config_.blocks; ++i) {
+    const std::string block = name + ".block" + std::to_string(i);
+    Values y = LayerNormForward(batch, x, P(block + ".norm.weight"), P(block + ".norm.bias"));
+    y = Relu(LinearForward(batch, y, P(block + ".layer0.weight"), P(block + ".layer0.bias")));
+    x = Plus(x, LinearForward(batch, y, P(block + ".layer1.weight"), P(block + ".layer1.bias")));
+  }
+  return LayerNormForward(batch, x, P(name + ".norm.weight"), P(name + ".norm.bias"));
+}
+
 Values Network::Mlp(const std::string& name, int batch, const Values& input) const {
   Values x = input;
   for (size_t i = 0; i < config_.hidden.size(); ++i) {
     const std::string layer = name + ".layer" + std::to_string(i);
     x = LinearForward(batch, x, P(layer + ".weight"), P(layer + ".bias"));
+    if (config_.blocks > 0) continue;
     if (config_.layer_norm) {
       x = LayerNormForward(batch, x, P(layer + ".norm.weight"), P(layer + ".norm.bias"));
     }
     x = Relu(x);
   }
+  if (config_.blocks > 0) x = Blocks(name, batch, std::move(x));
   return LinearForward(batch, x, P(name + ".output.weight"), P(name + ".output.bias"));
 }
 

@@ -42,6 +42,8 @@ class Network {
                      const Values& vector) const;
   // Output of the MLP `name` (actor.mlp, critic.q1, ...) for input (B, I), I: its input size.
   Values Mlp(const std::string& name, int batch, const Values& input) const;
+  // Residual blocks of an MLP, and the LayerNorm after them.
+  Values Blocks(const std::string& name, int batch, Values x) const;
   struct Gaussian {
     Values mean, log_std;  // (B, A)
   };

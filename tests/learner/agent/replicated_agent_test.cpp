@@ -164,6 +164,11 @@ const Case kCases[] = {
      [](Config* config) {
        config->network.hidden = {64, 256};
      }},
+    {"sac_with_blocks",
+     [](Config* config) {
+       config->network.hidden = {16};
+       config->network.blocks = 1;
+     }},
     {"sac_clipped", [](Config* config) { config->learner.max_grad_norm = 0.1; }},
     {"sac_with_priorities",
      [](Config* config) {

@@ -41,6 +41,17 @@ TEST(UpdateCost, CountsTheProductsOfAllPasses) {
                    2 * 10 * (4 * critic + mean + (3 * mean + 2 * critic) / 2));
 }
 
+// A block has 8 x 32 + 32 x 8.
+TEST(UpdateCost, ResidualBlocksAreCounted) {
+  Config config = SmallNetworks("sac");
+  config.network.layer_norm = true;
+  config.network.blocks = 3;
+  const double blocks = 3 * 2 * 8 * 32;
+  const double actor = 3 * 8 + blocks + 8 * 4, critics = 2 * (5 * 8 + blocks + 8);
+  EXPECT_DOUBLE_EQ(CostOfUpdate(config, State()).flop,
+                   2 * 10 * (4 * critics + actor + (3 * actor + 2 * critics) / 2));
+}
+
 // Latent state of 4 from layers 3 x 4, action layer 2 x 2, joint (4 + 2) x 8 + 8 x 8, heads 8 x (1
 // + 4 + 65), policy 4 x 8 + 8 x 2, each Q 8 x 8 + 8 x 8 + 8 x 1.
 TEST(UpdateCost, WithALatentModelItCountsTheModelsSteps) {

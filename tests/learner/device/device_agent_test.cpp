@@ -41,6 +41,13 @@ TEST(DeviceAgent, QuantilesAreRefused) {
   EXPECT_EQ(Refusal(config), "sac.quantiles = 5: a device does not compute quantiles, expected 0");
 }
 
+TEST(DeviceAgent, ResidualBlocksAreRefused) {
+  Config config = SmallConfig();
+  config.network.blocks = 1;
+  EXPECT_EQ(Refusal(config),
+            "network.blocks = 1: a device does not compute residual blocks, expected 0");
+}
+
 // A device refuses no encoder, so it must have the layers of each.
 TEST(DeviceAgent, EveryEncoderIsBuilt) {
   for (const nn::EncoderKind& kind : nn::EncoderKinds()) {

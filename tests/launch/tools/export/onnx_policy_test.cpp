@@ -53,13 +53,14 @@ TEST_P(OnnxPolicyOfEveryKind, ActsAsThePolicyDoes) {
 }
 
 TEST(OnnxPolicy, NetworksVariantsAreFollowed) {
-  NetworkConfig tanh, elu;
+  NetworkConfig tanh, elu, blocks;
   tanh.layer_norm = true;
   tanh.activation = "tanh";
   tanh.trunk = "relu";
   elu.activation = elu.trunk = "elu";
   elu.state_hidden = {12, 10};
-  for (const NetworkConfig& network : {tanh, elu}) {
+  blocks.blocks = 2;
+  for (const NetworkConfig& network : {tanh, elu, blocks}) {
     for (const char* encoder : {"", "compact"}) {
       const policy::CheckpointPolicy policy = RandomPolicy({encoder}, network);
       const ObservationSet observations =

@@ -51,6 +51,7 @@ inline policy::CheckpointPolicy RandomPolicy(const PolicyKind& kind, NetworkConf
   if (!kind.encoder.empty()) network.encoder = kind.encoder;
   network.initialisation = "pytorch";  // faster than orthogonal weights for large encoders
   network.hidden = {17, 12};
+  if (network.blocks > 0) network.hidden.pop_back();
   policy::CheckpointPolicy policy;
   policy.description = {.version = "0.1.0",
                         .algorithm = kAlgorithms[int(kind.output)],

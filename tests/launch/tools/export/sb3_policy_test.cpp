@@ -82,6 +82,9 @@ TEST(Sb3Policy, WhatHasNoCounterpartIsRefusedByName) {
     policy.description.network.trunk = trunk;
     EXPECT_THAT(ExportRefusal(policy), HasSubstr("network.trunk = " + trunk));
   }
+  policy = Counterpart({""});
+  policy.description.network.blocks = 2;
+  EXPECT_THAT(ExportRefusal(policy), HasSubstr("network.blocks = 2"));
   policy = Counterpart({"nature"});
   policy.description.spec.blocks[0].observed = true;
   EXPECT_THAT(ExportRefusal(policy), HasSubstr("pixels beside a vector of 4"));
