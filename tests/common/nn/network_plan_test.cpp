@@ -34,6 +34,7 @@ ObservationSpec Images(int height, int width) {
 // "NAME SHAPE" of every parameter.
 std::vector<std::string> Texts(const std::vector<ParameterSpec>& parameters) {
   std::vector<std::string> texts;
+  texts.reserve(parameters.size());
   for (const ParameterSpec& parameter : parameters) {
     texts.push_back(fmt::format("{} {}", parameter.name, fmt::join(parameter.shape, " ")));
   }
@@ -275,6 +276,7 @@ TEST(ActorCriticPlan, ResidualBlocksFollowOneLinearLayer) {
   spec.action_size = 2;
   const NetworkPlan mlp = PlanCritic(network, spec, "critic").mlps[0];
   std::vector<std::string> lines;
+  lines.reserve(mlp.layers().size());
   for (const LayerPlan& layer : mlp.layers()) lines.push_back(PlanLine(layer));
   EXPECT_THAT(
       lines,
