@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/base/check.h"
+#include "common/nn/parallel.h"
 
 namespace shoal::nn {
 namespace {
@@ -94,6 +95,7 @@ Op Op::ReorderPart(const dnnl::memory& from, const dnnl::memory::desc& from_part
 }
 
 void Op::Run() {
+  CHECK(InThreadScope()) << "a product outside a ThreadScope";
   // The shared scratchpad may have grown since this operation was built.
   if (scratch_) scratch_.set_data_handle(scratchpad_->Data());
   const dnnl_status_t status = dnnl_primitive_execute(primitive_.get(), CpuStream().get(),

@@ -27,6 +27,7 @@ namespace shoal::nn {
 namespace {
 
 thread_local int threads_of_new_networks = 1;
+thread_local int scopes = 0;  // of the calling thread
 
 struct Loop {
   int n;
@@ -66,9 +67,15 @@ void SetThreads(int threads) {
 
 ThreadScope::ThreadScope(int threads) : former_(omp_get_max_threads()) {
   omp_set_num_threads(threads);
+  ++scopes;
 }
 
-ThreadScope::~ThreadScope() { omp_set_num_threads(former_); }
+ThreadScope::~ThreadScope() {
+  --scopes;
+  omp_set_num_threads(former_);
+}
+
+bool InThreadScope() { return scopes > 0; }
 
 void ParallelFor(int n, const std::function<void(int begin, int end)>& body) {
   const int threads = std::min(n, omp_get_max_threads());

@@ -18,9 +18,9 @@ int Threads();
 // construction.
 //
 // Meanwhile signals wait for the calling thread, and always for the threads of a pool that starts
-// in a scope: compute only in scopes. The products of oneDNN on processors without AVX-512 move the
-// stack pointer into a buffer on the heap (jit_avx_gemm_f32), and the frame of a signal handler
-// would overwrite the memory before it.
+// in a scope: compute only in scopes, as Op::Run checks. The products of oneDNN on processors
+// without AVX-512 move the stack pointer into a buffer on the heap (jit_avx_gemm_f32), and the
+// frame of a signal handler would overwrite the memory before it.
 class ThreadScope {
  public:
   explicit ThreadScope(int threads);
@@ -32,6 +32,9 @@ class ThreadScope {
   const HeldSignals held_;
   int former_;
 };
+
+// Whether the calling thread is in a ThreadScope.
+bool InThreadScope();
 
 // Splits [0, n) into one contiguous range for each thread of the current scope and runs body(begin,
 // end) for each range. Returns after all ranges are done. The ranges depend only on n and on the

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/base/random.h"
+#include "common/nn/parallel.h"
 #include "common/nn/primitive_descs.h"
 #include "common/nn/replica.h"
 
@@ -76,6 +77,7 @@ class SharedLayoutsTest : public testing::TestWithParam<std::tuple<Shape, Precis
     alone_ = std::make_unique<Of>(shape, wanted, nullptr);
   }
 
+  const ThreadScope one_thread_{1};
   std::unique_ptr<Exchange> exchange_;
   std::deque<Replica> replicas_;
   std::vector<std::unique_ptr<Of>> of_rank_;

@@ -13,6 +13,7 @@
 #include "common/nn/encoder_module.h"
 #include "common/nn/features.h"
 #include "common/nn/host_memory.h"
+#include "common/nn/parallel.h"
 #include "tests/common/nn/network_fixture.h"
 #include "tests/support/paths.h"
 #include "tests/support/shared_numbers.h"
@@ -126,6 +127,7 @@ class TorchvisionTest : public testing::TestWithParam<EncoderCase> {
   }
 
   const TensorMap recorded_;
+  const ThreadScope one_thread_{1};
   const ModuleContext context_{Precision::kF32, kImages, 1};
   EncoderModule encoder_;
   std::vector<std::string> names_;
