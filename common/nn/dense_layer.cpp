@@ -3,7 +3,6 @@
 
 #include "common/base/check.h"
 #include "common/nn/activations.h"
-#include "common/nn/layer_norm.h"
 
 namespace shoal::nn {
 
@@ -12,25 +11,18 @@ DenseLayer::DenseLayer(const LayerContext& context, const LayerPlan& plan,
                        Precision output_precision, const Rows* skip)
     : linear_(context, plan.name, source, source_gradient, output_precision),
       skip_(skip),
-      activation_(plan.activation),
-      has_norm_(plan.layer_norm) {
-  CHECK(skip == nullptr || (!has_norm_ && skip->size() == output().size())) << plan.name;
-  if (!has_norm_) return;
-  norm_weight_ = context.parameters->Find(plan.name + ".norm.weight");
-  norm_bias_ = context.parameters->Find(plan.name + ".norm.bias");
-  normalised_.resize(size_t(output().size()));
-  scales_.resize(size_t(context.batch));
+      activation_(plan.activation) {
+  CHECK(skip == nullptr || (!plan.layer_norm && skip->size() == output().size())) << plan.name;
+  if (!plan.layer_norm) return;
+  norm_.emplace(context.parameters, plan.name + ".norm",
+                RowShape{output().batch(), output().columns()});
 }
 
 void DenseLayer::Forward() {
   linear_.Forward();
   Rows& output = linear_.output();
   float* y = output.values();
-  if (has_norm_) {
-    LayerNormForward({output.batch(), output.columns()}, y,
-                     {norm_weight_.value(), norm_bias_.value()}, normalised_.data(), scales_.data(),
-                     y);
-  }
+  if (norm_) norm_->Forward(y, y);
   if (skip_ != nullptr) {
     for (int i = 0; i < output.size(); ++i) y[i] += skip_->values()[i];
   }
@@ -66,14 +58,9 @@ void DenseLayer::Backward(Gradients wanted) {
       EluBackward(output.size(), output.values(), gradient, gradient);
       break;
   }
-  if (has_norm_) {
-    const RowShape shape{output.batch(), output.columns()};
-    if (wanted.parameters) {
-      LayerNormBackwardWeights(shape, gradient, normalised_.data(), norm_weight_.gradient(),
-                               norm_bias_.gradient());
-    }
-    LayerNormBackward(shape, gradient, {norm_weight_.value(), norm_bias_.value()},
-                      normalised_.data(), scales_.data(), gradient);
+  if (norm_) {
+    if (wanted.parameters) norm_->BackwardParameters(gradient);
+    norm_->BackwardInput(gradient, gradient);
   }
   linear_.Backward(wanted);
 }

@@ -3,13 +3,14 @@
 //
 //   y = act(LN(weight x + bias))   or   y = act(weight x + bias + skip)
 //
-// Dimensions: B batch, O outputs. xhat and rstd: see layer_norm.h.
+// Dimensions: B batch, O outputs.
 #pragma once
 
-#include <vector>
+#include <optional>
 
 #include "common/nn/hidden_layer.h"
 #include "common/nn/linear.h"
+#include "common/nn/row_norm.h"
 
 namespace shoal::nn {
 
@@ -35,10 +36,7 @@ class DenseLayer final : public HiddenLayer {
   Linear linear_;
   const Rows* skip_;
   Activation activation_;
-  bool has_norm_;
-  Parameter norm_weight_, norm_bias_;
-  std::vector<float> normalised_;  // xhat (B, O)
-  std::vector<float> scales_;      // rstd (B)
+  std::optional<RowNorm> norm_;
 };
 
 }  // namespace shoal::nn

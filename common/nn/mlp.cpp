@@ -8,11 +8,16 @@
 
 namespace shoal::nn {
 
-Precision Mlp::OutputPrecision(const NetworkPlan& plan, size_t i, Precision inner) {
+namespace {
+
+// Type in which hidden layer `i` stores its output for the next layer.
+Precision OutputPrecision(const NetworkPlan& plan, size_t i, Precision inner) {
   const bool is_last = i + 2 == plan.layers().size();
   const bool is_normalised = plan.layers()[i + 1].kind == LayerPlan::Kind::kLayerNorm;
   return is_last || is_normalised ? Precision::kF32 : inner;
 }
+
+}  // namespace
 
 Mlp::Mlp(const LayerContext& context, const NetworkPlan& plan, const Rows& input)
     : input_gradient_(context.batch, input.columns(), Precision::kF32) {

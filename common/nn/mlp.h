@@ -38,9 +38,6 @@ class Mlp {
     HiddenLayer* skipping = nullptr;
   };
 
-  // Type in which hidden layer `i` stores its output for the next layer.
-  static Precision OutputPrecision(const NetworkPlan& plan, size_t i, Precision inner);
-
   Rows input_gradient_;
   std::vector<Hidden> hidden_;
   std::unique_ptr<Linear> output_;

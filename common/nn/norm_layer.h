@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // LayerNorm as a layer of its own: y = LN(x).
 //
-// Dimensions: B batch, O outputs, which are as many as the inputs. xhat and rstd: see layer_norm.h.
+// Dimensions: B batch, O outputs, which are as many as the inputs.
 #pragma once
-
-#include <vector>
 
 #include "common/nn/hidden_layer.h"
 #include "common/nn/network_plan.h"
+#include "common/nn/row_norm.h"
 
 namespace shoal::nn {
 
@@ -28,9 +27,7 @@ class NormLayer final : public HiddenLayer {
  private:
   const dnnl::memory source_, source_gradient_;
   Rows output_, output_gradient_;
-  const Parameter weight_, bias_;
-  std::vector<float> normalised_;  // xhat (B, O)
-  std::vector<float> scales_;      // rstd (B)
+  RowNorm norm_;
 };
 
 }  // namespace shoal::nn

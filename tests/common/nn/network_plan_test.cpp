@@ -267,14 +267,19 @@ TEST(ActorCriticPlan, DefaultNetworkHasTheseParameters) {
   EXPECT_EQ(texts.back(), "critic.q2.output.bias 1");
 }
 
-TEST(ActorCriticPlan, ResidualBlocksFollowOneLinearLayer) {
+// A Q function of three numbers and two actions, with one residual block.
+NetworkPlan PlanWithABlock(int width) {
   NetworkConfig network;
-  network.hidden = {8};
+  network.hidden = {width};
   network.blocks = 1;
   ObservationSpec spec;
   spec.blocks = {{"joints", 3}};
   spec.action_size = 2;
-  const NetworkPlan mlp = PlanCritic(network, spec, "critic").mlps[0];
+  return PlanCritic(network, spec, "critic").mlps[0];
+}
+
+TEST(ActorCriticPlan, ResidualBlocksFollowOneLinearLayer) {
+  const NetworkPlan mlp = PlanWithABlock(8);
   std::vector<std::string> lines;
   lines.reserve(mlp.layers().size());
   for (const LayerPlan& layer : mlp.layers()) lines.push_back(PlanLine(layer));
@@ -297,14 +302,7 @@ TEST(ActorCriticPlan, ResidualBlocksFollowOneLinearLayer) {
 
 // The paper's blocks start with weights of variance 2 / inputs.
 TEST(ActorCriticPlan, WeightsOfResidualBlocksStartWithTheVarianceOfHe) {
-  NetworkConfig network;
-  network.hidden = {64};
-  network.blocks = 1;
-  ObservationSpec spec;
-  spec.blocks = {{"joints", 3}};
-  spec.action_size = 2;
-  ParameterSet parameters(PlanCritic(network, spec, "critic").Parameters(),
-                          ParameterSet::Use::kTraining);
+  ParameterSet parameters(PlanWithABlock(64).Parameters(), ParameterSet::Use::kTraining);
   parameters.Initialise(1);
   for (const auto& [name, inputs] : {std::pair("layer0", 64), std::pair("layer1", 256)}) {
     const Parameter weight = parameters.Find(std::string("critic.q1.block0.") + name + ".weight");
